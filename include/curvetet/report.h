@@ -1,0 +1,73 @@
+// What a run did: the certificate of each face, counts, times, reductions of size, quality.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "curvetet/error.h"
+#include "curvetet/mesh.h"
+
+namespace curvetet {
+
+struct StageTime {
+  std::string stage;
+  double seconds = 0;
+  std::size_t bytes = 0;  ///< of our own arrays at the end of the stage
+};
+
+/// Certificate of one CAD face.
+struct FaceReport {
+  std::uint32_t cad_id = 0;
+  std::string name, kind;
+  std::size_t triangles_parametric = 0;  ///< in t_3d when the face was recovered
+  std::size_t triangles = 0;             ///< in T_Γ
+  std::size_t coincide = 0;              ///< of T_Γ that are also in t_3d
+  std::size_t initial_points = 0, points_edge_recovery = 0, points_stage_one = 0, points_stage_two = 0;
+  std::uint64_t hash_locked = 0, hash_final = 0;
+  std::size_t relocks = 0, unlocks = 0, flips_without_points = 0, steiner = 0;
+  bool fallback = false;
+};
+
+struct SolidReport {
+  std::uint32_t cad_id = 0;
+  std::string name;
+  std::size_t tets = 0;
+  double volume = 0, cad_volume = 0;
+};
+
+/// Where the size had to be smaller than asked.
+struct ReductionReport {
+  std::uint32_t face = 0, other = 0;  ///< cad ids; other is 0 where there is none
+  std::string reason;
+  double size = 0, gap = 0;
+  Point where{};
+};
+
+struct Report {
+  int schema = 1;
+  std::string version, input, input_hash, unit, mode;
+  std::vector<std::string> healing;
+  std::string options_json;
+  std::vector<StageTime> stages;
+  std::size_t points = 0, tets = 0, triangles = 0, segments = 0;
+  std::size_t initial_surface_points = 0;
+  int rounds = 0;  ///< of the outer loop; 0: none was needed
+  std::vector<ReductionReport> reductions;
+  std::vector<FaceReport> faces;
+  std::vector<SolidReport> solids;
+  std::size_t unmet_tets = 0;
+  double worst_dihedral = 0;
+  Point worst_place{};
+  std::size_t tets_below_half_degree = 0, tets_below_five_degrees = 0;
+  double mean_radius_ratio = 0;
+  std::vector<std::size_t> radius_ratio_histogram, dihedral_histogram;
+  std::vector<std::string> warnings;
+  std::uint64_t mesh_hash = 0;
+  bool valid = false;
+  std::vector<Error> errors;   ///< empty when a valid mesh was made
+
+  std::string to_json() const; ///< indented, keys in a fixed order
+};
+
+}  // namespace curvetet

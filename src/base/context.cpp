@@ -1,0 +1,39 @@
+#include "base/context.h"
+
+#include <algorithm>
+
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
+#include <tbb/task_arena.h>
+
+#include <fmt/format.h>
+
+namespace curvetet {
+
+Error Context::stop_error(std::string_view stage) const {
+  if (cancelled()) return {ErrorCode::cancelled, fmt::format("cancelled during {}", stage)};
+  return {ErrorCode::time_limit, fmt::format("time limit reached during {}", stage), {}, {},
+          "raise --time-limit or ask for a larger --size"};
+}
+
+void Context::progress(std::string_view stage, double fraction) {
+  reported_ = std::max(reported_, std::clamp(fraction, 0.0, 1.0));
+  if (on_progress) on_progress(stage, reported_);
+}
+
+void parallel_for(const Context& context, std::size_t n, const std::function<void(std::size_t)>& body) {
+  if (context.threads == 1 || n < 2) {
+    for (std::size_t i = 0; i < n; ++i) body(i);
+    return;
+  }
+  tbb::task_arena arena(context.threads > 0 ? context.threads : tbb::task_arena::automatic);
+  arena.execute([&] {
+    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, n, 1),
+                      [&](const tbb::blocked_range<std::size_t>& range) {
+                        for (std::size_t i = range.begin(); i != range.end(); ++i) body(i);
+                      },
+                      tbb::simple_partitioner());
+  });
+}
+
+}  // namespace curvetet

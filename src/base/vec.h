@@ -1,0 +1,4 @@
+// The public header, under the name the rooms use.
+#pragma once
+
+#include "curvetet/vec.h"

@@ -1,0 +1,98 @@
+// Topology of a tetrahedralization: four vertices and four neighbours per tet, ghost tets, locks. No coordinates here.
+//
+// Convention, in one sentence: neighbour i is opposite vertex i. A tet with vertices (a,b,c,d) is positive when
+// orient3d(a,b,c,d) > 0 as predicates/predicates.h defines it; facet i lists the other three vertices so that orient3d
+// of (facet[0], facet[1], facet[2], vertex i) is positive too.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <unordered_map>
+#include <vector>
+
+#include "base/ids.h"
+
+namespace curvetet {
+
+/// The vertex at infinity; a tet that has it is a ghost, its finite facet is on the convex hull.
+inline constexpr VertexId kInfinite{std::uint32_t{0xFFFFFFFE}};
+
+/// kFacet[i]: the local vertices of the facet opposite local vertex i, such that (kFacet[i][0..2], i) is an even
+/// permutation of (0,1,2,3): replacing vertex i keeps the sign of orient3d(facet[0], facet[1], facet[2], x) of the tet.
+inline constexpr std::array<std::array<int, 3>, 4> kFacet{{{1, 3, 2}, {0, 2, 3}, {0, 3, 1}, {0, 1, 2}}};
+
+/// kEdge[e]: the local vertices of edge e; edge 5 - e is opposite edge e.
+inline constexpr std::array<std::array<int, 2>, 6> kEdge{{{0, 1}, {0, 2}, {0, 3}, {1, 2}, {1, 3}, {2, 3}}};
+
+/// A facet seen from one of its two tets: the one opposite local vertex `local` of `tet`.
+struct TetFacet {
+  TetId tet;
+  int local = 0;
+  friend bool operator==(const TetFacet&, const TetFacet&) = default;
+};
+
+/// Struct of arrays with recycled slots. Locks are kept on both sides of a facet.
+class TetComplex {
+ public:
+  using Vertices = std::array<VertexId, 4>;
+
+  std::size_t slots() const { return vertices_.size(); }   ///< alive and free slots
+  std::size_t alive() const { return vertices_.size() - free_.size(); }
+  bool is_alive(TetId t) const { return vertices_[t.value()][0].valid(); }
+  bool is_ghost(TetId t) const {
+    const Vertices& v = vertices_[t.value()];
+    return v[0] == kInfinite || v[1] == kInfinite || v[2] == kInfinite || v[3] == kInfinite;
+  }
+  const Vertices& vertices(TetId t) const { return vertices_[t.value()]; }
+  VertexId vertex(TetId t, int i) const { return vertices_[t.value()][static_cast<std::size_t>(i)]; }
+  TetId neighbour(TetId t, int i) const { return neighbours_[t.value()][static_cast<std::size_t>(i)]; }
+  /// Local index of v in t, or -1.
+  int local(TetId t, VertexId v) const {
+    const Vertices& w = vertices_[t.value()];
+    return w[0] == v ? 0 : w[1] == v ? 1 : w[2] == v ? 2 : w[3] == v ? 3 : -1;
+  }
+  /// The same facet seen from the other tet.
+  TetFacet mirror(TetFacet f) const;
+  /// The facet's vertices in the order of kFacet.
+  std::array<VertexId, 3> facet_vertices(TetFacet f) const;
+
+  TetId add(const Vertices& v);  ///< takes a free slot; neighbours invalid, flags clear
+  void remove(TetId t);          ///< frees the slot; neighbours are not touched
+  void set_neighbour(TetId t, int i, TetId n) { neighbours_[t.value()][static_cast<std::size_t>(i)] = n; }
+  void set_vertex(TetId t, int i, VertexId v) { vertices_[t.value()][static_cast<std::size_t>(i)] = v; }
+  /// Makes two facets each other's neighbour.
+  void glue(TetFacet a, TetFacet b);
+
+  // Locks: four bits of the flags, one a facet; the CAD face in a side table.
+  bool is_locked(TetFacet f) const { return (flags_[f.tet.value()] >> f.local) & 1U; }
+  FaceId locked_face(TetFacet f) const;           ///< invalid if not locked
+  void lock(TetFacet f, FaceId face);             ///< both sides
+  void unlock(TetFacet f);                        ///< both sides
+  std::size_t locked_count() const { return locks_.size(); }
+  /// Carries the lock of an old facet to a new tet's facet with the same vertices (used by commits; one side).
+  void set_lock_bit(TetFacet f, bool locked);
+
+  // Region of a tet (SolidId value + 1; 0 unknown or outside) in the flags' high bits, and two scratch marks.
+  std::uint32_t region(TetId t) const { return flags_[t.value()] >> 8; }
+  void set_region(TetId t, std::uint32_t region) { flags_[t.value()] = (flags_[t.value()] & 0xFFU) | (region << 8); }
+  bool mark(TetId t, int which) const { return (flags_[t.value()] >> (4 + which)) & 1U; }
+  void set_mark(TetId t, int which, bool on);
+
+  void reserve(std::size_t tets);
+  std::size_t bytes() const;
+
+ private:
+  using FacetKey = std::array<std::uint32_t, 3>;  // sorted vertex values
+  struct FacetHash {
+    std::size_t operator()(const FacetKey& k) const noexcept;
+  };
+  FacetKey key(TetFacet f) const;
+
+  std::vector<Vertices> vertices_;
+  std::vector<std::array<TetId, 4>> neighbours_;
+  std::vector<std::uint32_t> flags_;
+  std::vector<std::uint32_t> free_;
+  std::unordered_map<FacetKey, FaceId, FacetHash> locks_;  // looked up, never iterated
+};
+
+}  // namespace curvetet

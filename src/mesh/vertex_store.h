@@ -1,0 +1,58 @@
+// All vertices of a mesh: position, owner, parameter, origin. Append-only while meshing.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "base/ids.h"
+#include "base/vec.h"
+
+namespace curvetet {
+
+enum class OwnerKind : std::uint8_t { vertex, edge, face, interior };
+
+/// The CAD entity of lowest dimension a vertex lies on.
+struct Owner {
+  OwnerKind kind = OwnerKind::interior;
+  std::uint32_t index = 0;  ///< of the CadVertexId, EdgeId, FaceId or (interior) SolidId
+  static Owner of(CadVertexId v) { return {OwnerKind::vertex, v.value()}; }
+  static Owner of(EdgeId e) { return {OwnerKind::edge, e.value()}; }
+  static Owner of(FaceId f) { return {OwnerKind::face, f.value()}; }
+  static Owner of(SolidId s) { return {OwnerKind::interior, s.value()}; }
+  friend bool operator==(const Owner&, const Owner&) = default;
+};
+
+/// The stage that made a vertex.
+enum class Origin : std::uint8_t {
+  curve_mesh, face_mesh, edge_recovery, stage_one, stage_two, ladder, steiner, interior
+};
+
+/// Positions are working coordinates on the grid (geometry/frame.h). Ids are never reused.
+class VertexStore {
+ public:
+  VertexId add(Vec3 position, Owner owner, Vec2 parameter, Origin origin) {
+    positions_.push_back(position);
+    owners_.push_back(owner);
+    parameters_.push_back(parameter);
+    origins_.push_back(origin);
+    return VertexId(positions_.size() - 1);
+  }
+  std::size_t size() const { return positions_.size(); }
+  Vec3 position(VertexId v) const { return positions_[v.value()]; }
+  Owner owner(VertexId v) const { return owners_[v.value()]; }
+  /// (u,v) for a vertex on a face, (t,0) for one on an edge, zero otherwise.
+  Vec2 parameter(VertexId v) const { return parameters_[v.value()]; }
+  Origin origin(VertexId v) const { return origins_[v.value()]; }
+  /// For smoothing; the new position must be on the grid.
+  void move(VertexId v, Vec3 position) { positions_[v.value()] = position; }
+  void set_owner(VertexId v, Owner owner) { owners_[v.value()] = owner; }
+  const Vec3* positions() const { return positions_.data(); }
+
+ private:
+  std::vector<Vec3> positions_;
+  std::vector<Owner> owners_;
+  std::vector<Vec2> parameters_;
+  std::vector<Origin> origins_;
+};
+
+}  // namespace curvetet

@@ -1,0 +1,131 @@
+// t_ps: the triangulation of one CAD face in its parameter plane. Nodes are {vertex id, chart point}; a seam vertex has two
+// nodes, a pole one node per end of its degenerate edge plus those along it. Triangles turn left in the chart, exactly.
+//
+// Edges that lie on a use of a CAD edge are constrained: they carry the use's number and the segment's place is found by
+// its two nodes. Everything else may be flipped.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "base/error.h"
+#include "base/ids.h"
+#include "mesh/vertex_store.h"
+#include "planar/chart.h"
+
+namespace curvetet {
+
+struct FaceNode {
+  VertexId vertex;
+  Vec2 q;  ///< chart point
+};
+
+/// neighbour[i] and use[i] belong to the edge opposite node[i], that is (node[i+1], node[i+2]).
+struct FaceTriangle {
+  std::array<NodeId, 3> node;
+  std::array<TriangleId, 3> neighbour;  ///< invalid on the boundary of the domain
+  std::array<std::int32_t, 3> use{-1, -1, -1};  ///< number of the edge use it lies on (FaceMesh input), or -1
+  bool alive() const { return node[0].valid(); }
+};
+
+/// An edge of the triangulation: the one opposite local node `local` of `triangle`.
+struct FaceEdge {
+  TriangleId triangle;
+  int local = 0;
+};
+
+enum class PlanarRefusal : std::uint8_t {
+  none,
+  outside,         ///< not in the domain
+  on_constraint,   ///< on (or beyond) a constrained edge
+  duplicate,       ///< at an existing node
+  folded,          ///< a new triangle would not turn left, or its normal opposes the surface's
+  invariant,       ///< the region between chord and arc holds another node or loop
+};
+
+/// One polygonal chain of the input: the nodes along one edge use in the order of its loop.
+struct ChainInput {
+  std::int32_t use = 0;                ///< number handed back in FaceTriangle::use
+  std::vector<VertexId> vertices;      ///< first and last included
+  std::vector<Vec2> q;                 ///< chart points, as many; where two chains of a loop join, the first's end is taken
+  bool two_sided = false;              ///< internal: triangles on both sides
+};
+struct LoopInput {
+  std::vector<ChainInput> chains;      ///< closed, the domain to the left; a two-sided chain stands alone in its own LoopInput
+  bool open = false;                   ///< an open internal chain
+};
+struct FaceInput {
+  std::vector<LoopInput> loops;
+  std::vector<FaceNode> isolated;      ///< vertices that must become nodes
+};
+
+/// Loops that cross or are not nested: which chains' segments are at fault, so that the caller can split them.
+struct LoopFault {
+  std::int32_t use_a = -1, use_b = -1;
+  std::size_t segment_a = 0, segment_b = 0;  ///< index of the segment's first vertex in its chain
+  std::string what;
+};
+
+class FaceMesh {
+ public:
+  Chart chart;
+
+  /// Constrained triangulation of the domain the loops bound (exact; interior found by winding). On faults nothing is built
+  /// and all of them are returned.
+  std::vector<LoopFault> build(const FaceInput& input);
+
+  const FaceNode& node(NodeId n) const { return nodes_[n]; }
+  const FaceTriangle& triangle(TriangleId t) const { return triangles_[t]; }
+  std::size_t node_count() const { return nodes_.size(); }
+  std::size_t triangle_slots() const { return triangles_.size(); }
+  std::size_t triangle_count() const;    ///< alive
+  std::array<VertexId, 3> vertices(TriangleId t) const;
+  /// The nodes that carry a vertex (one, or several for seams and poles).
+  std::vector<NodeId> nodes_of(VertexId v) const;
+  /// A triangle at a node; empty if the node is in none.
+  TriangleId triangle_at(NodeId n) const;
+  /// All triangles around a node.
+  void star(NodeId n, std::vector<TriangleId>& out) const;
+  std::optional<FaceEdge> find_edge(NodeId a, NodeId b) const;
+
+  /// The triangle that contains q (walk from the hint, then a scan); empty if outside.
+  std::optional<TriangleId> locate(Vec2 q, TriangleId hint = TriangleId()) const;
+
+  /// Decides whether the edge shared by two triangles (a,b,c) and (b,a,d) should be flipped to cd: the caller's Delaunay
+  /// criterion (in space, or in the metric). Asked only where the flip is valid in the chart.
+  using FlipWanted = std::function<bool(NodeId a, NodeId b, NodeId c, NodeId d)>;
+
+  /// Would inserting at q be legal? `triangle` contains q. Nothing is changed.
+  PlanarRefusal judge_insert(Vec2 q, TriangleId triangle) const;
+  /// Inserts an interior node and restores the criterion by flips. `changed`: every triangle that was touched (alive ones).
+  NodeId insert(VertexId vertex, Vec2 q, TriangleId triangle, const FlipWanted& wanted, std::vector<TriangleId>& changed);
+
+  /// Splits the constrained edge at a node on its arc (which is usually not on the chord). `invariant` if the region between
+  /// chord and the two new chords holds another node or edge, then nothing is changed.
+  PlanarRefusal judge_split(FaceEdge edge, Vec2 q) const;
+  NodeId split(FaceEdge edge, VertexId vertex, Vec2 q, const FlipWanted& wanted, std::vector<TriangleId>& changed);
+
+  /// Flips one unconstrained edge if the result turns left (exactly).
+  bool flip(FaceEdge edge);
+  /// Lawson's flips from the given triangles until none is wanted; bounded, deterministic.
+  void restore(std::span<const TriangleId> from, const FlipWanted& wanted, std::vector<TriangleId>& changed);
+
+  /// Validity: what is broken and where; empty when valid. Links reciprocal, all triangles turn left exactly, constraints present.
+  std::vector<std::string> check() const;
+
+  /// Replaces the connectivity by another set of triangles over the same nodes (T_Γ after recovery); false if it does not
+  /// form a valid surface with the same constrained edges.
+  bool replace(const std::vector<std::array<NodeId, 3>>& triangles);
+
+ private:
+  IndexedVector<NodeId, FaceNode> nodes_;
+  IndexedVector<TriangleId, FaceTriangle> triangles_;
+  IndexedVector<NodeId, TriangleId> node_triangle_;
+  std::vector<TriangleId> free_;
+};
+
+}  // namespace curvetet

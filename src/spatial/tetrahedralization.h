@@ -1,0 +1,109 @@
+// Delaunay tetrahedralization of grid points, with locked facets and kept segments. Insertion is by cavity:
+// find, judge, commit.
+//
+// Before: every vertex lies on the grid (geometry/frame.h); no two at one place.
+// After each commit: neighbour links are reciprocal, every finite tet is positive (exactly), ghosts cover the hull, and
+// without locks and kept segments the tetrahedralization is Delaunay of the symbolically perturbed points.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <span>
+#include <unordered_set>
+#include <vector>
+
+#include "base/context.h"
+#include "base/error.h"
+#include "mesh/tet_complex.h"
+#include "mesh/vertex_store.h"
+
+namespace curvetet {
+
+/// An edge seen from one tet: local vertices i and j.
+struct TetEdge {
+  TetId tet;
+  int i = 0, j = 1;
+};
+
+/// Why a vertex cannot be inserted.
+enum class Refusal : std::uint8_t {
+  none,
+  duplicate,         ///< a vertex is already at this place
+  on_locked_facet,   ///< the point lies on a locked facet
+  on_kept_segment,   ///< the point lies on a kept segment
+  locked_cavity,     ///< no star-shaped cavity is left after shrinking
+  outside,           ///< outside the hull while the caller forbade it
+  too_close,         ///< closer than asked to an existing vertex
+  encroaches,        ///< the cavity would touch what the caller protects
+};
+const char* name(Refusal refusal);
+
+/// The tets that an insertion would delete and the facets of their boundary (each seen from the tet that goes).
+struct Cavity {
+  VertexId vertex;
+  std::vector<TetId> tets;
+  std::vector<TetFacet> boundary;
+  Refusal refusal = Refusal::none;
+  bool ok() const { return refusal == Refusal::none; }
+};
+
+class Tetrahedralization {
+ public:
+  /// The store must outlive this object; vertices are inserted by id.
+  Tetrahedralization(const VertexStore& vertices, std::uint64_t seed);
+
+  /// Delaunay tetrahedralization of all given vertices, in BRIO rounds along a Hilbert curve; replaces what is there. An error
+  /// if fewer than four, or all coplanar, or two at one place (names both).
+  Status build(std::span<const VertexId> vertices, const Context& context);
+
+  // --- insertion: find, judge, commit ---
+  /// The tet (finite, or a ghost if outside the hull) that contains p, by a walk from the hint (or from the last place).
+  TetId locate(Vec3 p, TetId hint = TetId()) const;
+  /// The cavity of the vertex, which is in the store but not yet in this tetrahedralization; changes nothing. Not grown
+  /// across locked facets, shrunk until star-shaped (exactly) with every kept segment on its boundary or outside.
+  Cavity find_cavity(VertexId vertex, TetId hint = TetId()) const;
+  /// Replaces the cavity by the star of the vertex; returns one new tet.
+  TetId commit(const Cavity& cavity);
+  /// find and commit.
+  Refusal insert(VertexId vertex, TetId hint = TetId());
+  /// The tets made by the last commit.
+  const std::vector<TetId>& last_star() const { return star_; }
+
+  // --- queries ---
+  const TetComplex& complex() const { return complex_; }
+  TetComplex& complex() { return complex_; }
+  const VertexStore& vertices() const { return *vertices_; }
+  Vec3 position(VertexId v) const { return vertices_->position(v); }
+  bool contains(VertexId v) const { return v.value() < vertex_tet_.size() && vertex_tet_[v].valid(); }
+  TetId tet_of(VertexId v) const { return vertex_tet_[v]; }
+  /// All tets (ghosts too) around a vertex, into `out` (cleared first).
+  void star(VertexId v, std::vector<TetId>& out) const;
+  std::optional<TetEdge> find_edge(VertexId a, VertexId b) const;
+  /// The facet with these vertices, seen from one of its tets, if it exists.
+  std::optional<TetFacet> find_facet(VertexId a, VertexId b, VertexId c) const;
+  /// The tets around an edge in order, starting at edge.tet, turning from local facet to facet; ghosts included.
+  void ring(TetEdge edge, std::vector<TetId>& out) const;
+
+  // --- constraints ---
+  void lock(TetFacet facet, FaceId face) { complex_.lock(facet, face); }
+  /// Edges that no insertion and no flip may remove.
+  void keep_segment(VertexId a, VertexId b);
+  void release_segment(VertexId a, VertexId b);
+  bool is_kept(VertexId a, VertexId b) const;
+
+  /// To be called by code that changes the complex by flips: keeps vertex_tet_ right for the vertices of t.
+  void touch(TetId t);
+
+ private:
+  const VertexStore* vertices_;
+  TetComplex complex_;
+  IndexedVector<VertexId, TetId> vertex_tet_;
+  std::unordered_set<std::uint64_t> kept_;
+  std::vector<TetId> star_;
+  mutable TetId last_;
+  mutable std::uint64_t random_;
+};
+
+}  // namespace curvetet
