@@ -6,32 +6,12 @@
 
 #include "base/context.h"
 #include "base/error.h"
+#include "conjoint/surface_meshes.h"
 #include "geometry/model.h"
 #include "mesh/vertex_store.h"
-#include "planar/face_mesh.h"
 #include "sizing/size_field.h"
 
 namespace curvetet {
-
-/// Ordered points on one CAD edge, by rising parameter; the ends are the CAD vertices'. Empty for a degenerate edge, whose
-/// one vertex is the CAD vertex's.
-struct CurveMesh {
-  std::vector<VertexId> vertices;
-  std::vector<double> parameters;
-};
-
-/// A use of an edge by a face, in the numbering that FaceTriangle::use speaks of: loops in order, then internal edges.
-struct UseRef {
-  const EdgeUse* use = nullptr;
-  EdgeId edge;
-};
-
-struct BoundaryMesh {
-  IndexedVector<CadVertexId, VertexId> cad_vertices;
-  IndexedVector<EdgeId, CurveMesh> curves;
-  IndexedVector<FaceId, FaceMesh> faces;
-  IndexedVector<FaceId, std::vector<UseRef>> uses;  ///< per face, by use number
-};
 
 /// Why a face could not be meshed in its parameter plane.
 struct FaceFailure {
