@@ -1,0 +1,113 @@
+// Flat arrays and a stack of free slots. A dead slot is one whose first vertex is invalid: no separate flag to keep
+// right.
+//
+// Lock bits live in the flags, so that growing a cavity reads one word per tet; only the CAD face of a lock is looked
+// up in a table, keyed by the facet's sorted vertices. The key survives commits that replace the tets on either side,
+// which a key by tet and local index would not.
+#include "mesh/tet_complex.h"
+
+#include <algorithm>
+
+#include "base/error.h"
+
+namespace curvetet {
+
+std::size_t TetComplex::FacetHash::operator()(const FacetKey& k) const noexcept {
+  std::uint64_t h = k[0];
+  for (const std::uint32_t v : {k[1], k[2]}) {
+    h = (h ^ (h >> 29)) * 0x9E3779B97F4A7C15ULL + v;
+  }
+  h = (h ^ (h >> 32)) * 0xD6E8FEB86659FD93ULL;
+  return static_cast<std::size_t>(h ^ (h >> 32));
+}
+
+TetComplex::FacetKey TetComplex::key(TetFacet f) const {
+  const std::array<VertexId, 3> v = facet_vertices(f);
+  FacetKey k{v[0].value(), v[1].value(), v[2].value()};
+  std::sort(k.begin(), k.end());
+  return k;
+}
+
+TetFacet TetComplex::mirror(TetFacet f) const {
+  const TetId n = neighbour(f.tet, f.local);
+  const std::array<TetId, 4>& back = neighbours_[n.value()];
+  const int j = back[0] == f.tet ? 0 : back[1] == f.tet ? 1 : back[2] == f.tet ? 2 : 3;
+  return {n, j};
+}
+
+std::array<VertexId, 3> TetComplex::facet_vertices(TetFacet f) const {
+  const std::array<int, 3>& k = kFacet[static_cast<std::size_t>(f.local)];
+  return {vertex(f.tet, k[0]), vertex(f.tet, k[1]), vertex(f.tet, k[2])};
+}
+
+TetId TetComplex::add(const Vertices& v) {
+  if (!free_.empty()) {
+    const std::uint32_t slot = free_.back();
+    free_.pop_back();
+    vertices_[slot] = v;
+    neighbours_[slot] = {};
+    flags_[slot] = 0;
+    return TetId(slot);
+  }
+  vertices_.push_back(v);
+  neighbours_.emplace_back();
+  flags_.push_back(0);
+  return TetId(vertices_.size() - 1);
+}
+
+void TetComplex::remove(TetId t) {
+  CURVETET_CHECK(is_alive(t));
+  vertices_[t.value()][0] = VertexId();
+  free_.push_back(t.value());
+}
+
+void TetComplex::glue(TetFacet a, TetFacet b) {
+  set_neighbour(a.tet, a.local, b.tet);
+  set_neighbour(b.tet, b.local, a.tet);
+}
+
+FaceId TetComplex::locked_face(TetFacet f) const {
+  if (!is_locked(f)) return FaceId();
+  const auto it = locks_.find(key(f));
+  return it == locks_.end() ? FaceId() : it->second;
+}
+
+void TetComplex::lock(TetFacet f, FaceId face) {
+  set_lock_bit(f, true);
+  set_lock_bit(mirror(f), true);
+  locks_.insert_or_assign(key(f), face);
+}
+
+void TetComplex::unlock(TetFacet f) {
+  set_lock_bit(f, false);
+  set_lock_bit(mirror(f), false);
+  locks_.erase(key(f));
+}
+
+void TetComplex::set_lock_bit(TetFacet f, bool locked) {
+  const std::uint32_t bit = 1U << f.local;
+  std::uint32_t& flags = flags_[f.tet.value()];
+  flags = locked ? (flags | bit) : (flags & ~bit);
+}
+
+void TetComplex::set_mark(TetId t, int which, bool on) {
+  const std::uint32_t bit = 1U << (4 + which);
+  std::uint32_t& flags = flags_[t.value()];
+  flags = on ? (flags | bit) : (flags & ~bit);
+}
+
+void TetComplex::reserve(std::size_t tets) {
+  vertices_.reserve(tets);
+  neighbours_.reserve(tets);
+  flags_.reserve(tets);
+}
+
+std::size_t TetComplex::bytes() const {
+  // A node of the lock table: key, value, cached hash and link.
+  const std::size_t lock_node = sizeof(FacetKey) + sizeof(FaceId) + 2 * sizeof(void*);
+  return vertices_.capacity() * sizeof(Vertices) + neighbours_.capacity() * sizeof(neighbours_[0]) +
+         (flags_.capacity() + free_.capacity()) * sizeof(std::uint32_t) + locks_.size() * lock_node +
+         locks_.bucket_count() * sizeof(void*);
+}
+
+}  // namespace curvetet
