@@ -25,7 +25,7 @@ TEST(Measures, CornerTet) {
 }
 
 TEST(Measures, RegularTetIsBest) {
-  const Vec3 a{1, 1, 1}, b{1, -1, -1}, c{-1, 1, -1}, d{-1, -1, 1};
+  const Vec3 a{1, 1, 1}, b{-1, 1, -1}, c{1, -1, -1}, d{-1, -1, 1};
   ASSERT_GT(tet_volume(a, b, c, d), 0);
   EXPECT_NEAR(radius_ratio(a, b, c, d), 1, 1e-14);
   EXPECT_NEAR(smallest_dihedral(a, b, c, d), std::acos(1.0 / 3) * 180 / std::numbers::pi, 1e-12);
