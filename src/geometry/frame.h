@@ -1,4 +1,5 @@
-// Working coordinates: the body moved to the origin and scaled by a power of two into [-1/2, 1/2]^3, on a grid of 2^-42.
+// Working coordinates: the body moved to the origin and scaled by a power of two into [-1/2, 1/2]^3, on a grid of
+// 2^-42.
 #pragma once
 
 #include <cmath>

@@ -1,4 +1,5 @@
-// The body as the mesher sees it: solids, faces, edges and vertices by id, with their curves and surfaces. No CAD kernel here.
+// The body as the mesher sees it: solids, faces, edges and vertices by id, with their curves and surfaces. No CAD
+// kernel here.
 #pragma once
 
 #include <array>
@@ -48,11 +49,14 @@ struct EdgeUse {
   EdgeId edge;
   bool reversed = false;  ///< the loop runs through the edge from high to low
   bool seam = false;      ///< the edge is used twice by this face and its two parameter curves lie a period apart
-  bool internal = false;  ///< a constraint inside the face, both sides belong to it (a slit used twice counts as internal)
-  std::shared_ptr<const ParameterCurve> curve;  ///< over [edge.low, edge.high], already on a consistent lift of the domain
+  bool internal =
+      false;  ///< a constraint inside the face, both sides belong to it (a slit used twice counts as internal)
+  std::shared_ptr<const ParameterCurve>
+      curve;  ///< over [edge.low, edge.high], already on a consistent lift of the domain
 };
 
-/// A closed chain of uses: each ends where the next begins. Orientation as in the (u,v) plane: the face lies to the left.
+/// A closed chain of uses: each ends where the next begins. Orientation as in the (u,v) plane: the face lies to the
+/// left.
 struct Loop {
   std::vector<EdgeUse> uses;
 };
@@ -60,45 +64,45 @@ struct Loop {
 struct ModelFace {
   Label label;
   std::shared_ptr<const Surface> surface;
-  bool reversed = false;  ///< the face's outward normal is minus du x dv
-  std::vector<Loop> loops;                 ///< the outer one first where it can be told
-  std::vector<EdgeUse> internal_edges;     ///< constraints inside the face that close no loop
+  bool reversed = false;                ///< the face's outward normal is minus du x dv
+  std::vector<Loop> loops;              ///< the outer one first where it can be told
+  std::vector<EdgeUse> internal_edges;  ///< constraints inside the face that close no loop
   std::vector<CadVertexId> internal_vertices;
   std::vector<Vec2> internal_vertex_uv;
   Vec2 low, high;        ///< box of the trimmed domain in (u,v)
   double tolerance = 0;  ///< working units
   /// Solids on the side the face's outward normal points to, and on the other; invalid: outside of every solid.
   SolidId front, back;
-  double area = 0;       ///< the CAD's own, working units squared; 0 if unknown
+  double area = 0;  ///< the CAD's own, working units squared; 0 if unknown
 };
 
 struct ModelSolid {
   Label label;
-  std::string path;            ///< assembly path, "/" between levels; empty at the top
-  std::vector<FaceId> faces;   ///< all faces of its shells
-  double volume = 0;           ///< the CAD's own, working units cubed
+  std::string path;           ///< assembly path, "/" between levels; empty at the top
+  std::vector<FaceId> faces;  ///< all faces of its shells
+  double volume = 0;          ///< the CAD's own, working units cubed
 };
 
 /// One change that healing made.
 struct HealingNote {
-  std::string entity;   ///< "face 12"
-  std::string what;     ///< "sewn", "wire reordered", ...
+  std::string entity;  ///< "face 12"
+  std::string what;    ///< "sewn", "wire reordered", ...
 };
 
 /// A body ready to be meshed.
 struct Model {
   Frame frame;
-  std::string unit = "mm";    ///< unit of the CAD coordinates that `frame` maps from
-  Box3 box;                   ///< of the body, working coordinates
+  std::string unit = "mm";  ///< unit of the CAD coordinates that `frame` maps from
+  Box3 box;                 ///< of the body, working coordinates
   IndexedVector<SolidId, ModelSolid> solids;
   IndexedVector<FaceId, ModelFace> faces;
   IndexedVector<EdgeId, ModelEdge> edges;
   IndexedVector<CadVertexId, ModelVertex> vertices;
   std::vector<HealingNote> healing;
   double diagonal() const { return box.diagonal(); }
-  std::string face_name(FaceId face) const;    ///< the CAD's name, or "face_12"
-  std::string edge_name(EdgeId edge) const;    ///< the CAD's name, or "edge_7"
-  std::string solid_name(SolidId solid) const; ///< the CAD's name, or "solid_1"
+  std::string face_name(FaceId face) const;     ///< the CAD's name, or "face_12"
+  std::string edge_name(EdgeId edge) const;     ///< the CAD's name, or "edge_7"
+  std::string solid_name(SolidId solid) const;  ///< the CAD's name, or "solid_1"
   /// The CAD faces that a vertex with this owner lies on (ascending).
   std::vector<FaceId> faces_at(CadVertexId vertex) const;
 };

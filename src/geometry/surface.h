@@ -1,6 +1,7 @@
 // Parametric curves and surfaces in working coordinates. Evaluation is const but not thread-safe: one clone per thread.
 #pragma once
 
+#include <limits>
 #include <memory>
 #include <optional>
 
@@ -12,6 +13,7 @@ enum class SurfaceKind { plane, cylinder, cone, sphere, torus, bezier, bspline, 
 enum class CurveKind { line, circle, ellipse, bspline, other };
 
 const char* name(SurfaceKind kind);
+const char* name(CurveKind kind);
 
 /// Value and derivatives of a surface at (u,v).
 struct SurfaceFirst {
@@ -35,6 +37,12 @@ class Surface {
   /// An independent evaluator for another thread.
   virtual std::unique_ptr<Surface> clone() const = 0;
 
+  /// Tells the surface the box of the trimmed domain. Only normal() uses it: at a pole it takes the limit from this
+  /// side.
+  void set_domain(Vec2 low, Vec2 high) {
+    low_ = low;
+    high_ = high;
+  }
   /// Unit normal du x dv; where the derivatives collapse (a pole), the limit from nearby, or zero if there is none.
   Vec3 normal(Vec2 uv) const;
   /// Parameters of the closest point near the guess (damped Gauss-Newton on the squared distance); empty if it does not
@@ -42,6 +50,10 @@ class Surface {
   virtual std::optional<Vec2> project(Vec3 point, Vec2 guess) const;
   /// Principal curvatures, absolute values, {largest, smallest}; zero where undefined (poles).
   Vec2 curvatures(Vec2 uv) const;
+
+ private:
+  Vec2 low_{-std::numeric_limits<double>::infinity(), -std::numeric_limits<double>::infinity()};
+  Vec2 high_{std::numeric_limits<double>::infinity(), std::numeric_limits<double>::infinity()};
 };
 
 struct CurveSecond {
