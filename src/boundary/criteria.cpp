@@ -1,0 +1,184 @@
+// Decisions in space for triangulations in the plane. The tetrahedralization that follows is Delaunay in space, so t_ps
+// is made to agree with it: flips by angles in space, new points at centres of surface Delaunay balls. The anisotropic
+// incircle test of the literature (one metric per test, interpolated in the plane) was rejected: it answers a different
+// question where the metric varies within a triangle, that is near poles and on coarse meshes of strongly curved faces.
+
+#include "boundary/criteria.h"
+
+#include <cmath>
+#include <limits>
+#include <memory>
+
+#include "boundary/boundary_mesh.h"
+
+namespace curvetet {
+
+namespace {
+
+/// Sum of cotangents below which an edge is not Delaunay; away from zero, so that cocircular corners never flip back
+/// and forth.
+constexpr double kFlipMargin = 1e-6;
+/// Largest number of Newton steps; from a good start two are enough, a bad start never converges.
+constexpr int kNewtonSteps = 8;
+/// Distances to the three corners agree to this share of the radius.
+constexpr double kBallTolerance = 0.01;
+
+double cotangent(Vec3 apex, Vec3 a, Vec3 b) {
+  const Vec3 x = a - apex, y = b - apex;
+  const double sine = norm(cross(x, y));
+  const double cosine = dot(x, y);
+  if (sine > 0) return cosine / sine;
+  return cosine < 0 ? -std::numeric_limits<double>::infinity() : std::numeric_limits<double>::infinity();
+}
+
+int count_degenerate(const Corner& a, const Corner& b, const Corner& c, const Corner& d, const Corner& e,
+                     const Corner& f) {
+  return (degenerate(a, b, c) ? 1 : 0) + (degenerate(d, e, f) ? 1 : 0);
+}
+
+bool inside_chart(Vec2 q) { return std::abs(q.x) <= 1 && std::abs(q.y) <= 1; }
+
+Vec2 centroid(const std::array<Vec2, 3>& q) { return (1.0 / 3) * (q[0] + q[1] + q[2]); }
+
+double diameter(const std::array<Vec2, 3>& q) {
+  return std::max({distance(q[0], q[1]), distance(q[1], q[2]), distance(q[2], q[0])});
+}
+
+/// Solves the 2 by 2 system with rows r0, r1; empty when it is singular beyond use.
+std::optional<Vec2> solve(Vec2 r0, Vec2 r1, double b0, double b1) {
+  const double determinant = cross(r0, r1);
+  if (std::abs(determinant) <= 1e-12 * norm(r0) * norm(r1)) return std::nullopt;
+  return Vec2{(b0 * r1.y - b1 * r0.y) / determinant, (r0.x * b1 - r1.x * b0) / determinant};
+}
+
+/// Chart image of the circumcentre under the affine map that takes the chart triangle to the one in space.
+std::optional<Vec2> affine_centre(const std::array<Vec2, 3>& q, const std::array<Vec3, 3>& p) {
+  const double a2 = norm2(p[2] - p[1]), b2 = norm2(p[0] - p[2]), c2 = norm2(p[1] - p[0]);
+  const double wa = a2 * (b2 + c2 - a2), wb = b2 * (c2 + a2 - b2), wc = c2 * (a2 + b2 - c2);
+  const double sum = wa + wb + wc;
+  if (!(sum > 1e-12 * (a2 + b2 + c2) * (a2 + b2 + c2))) return std::nullopt;
+  return (wa / sum) * q[0] + (wb / sum) * q[1] + (wc / sum) * q[2];
+}
+
+}  // namespace
+
+bool degenerate(const Corner& a, const Corner& b, const Corner& c) {
+  return a.vertex == b.vertex || b.vertex == c.vertex || c.vertex == a.vertex;
+}
+
+double alignment(const Corner& a, const Corner& b, const Corner& c) {
+  const Vec3 normal = cross(b.position - a.position, c.position - a.position);
+  const Vec3 mean = a.normal + b.normal + c.normal;
+  const double lengths = norm(normal) * norm(mean);
+  return lengths > 0 ? dot(normal, mean) / lengths : 1;
+}
+
+bool flip_improves(const Corner& a, const Corner& b, const Corner& c, const Corner& d) {
+  if (c.vertex == d.vertex) return false;
+  const int degenerate_now = count_degenerate(a, b, c, b, a, d);
+  const int degenerate_then = count_degenerate(a, d, c, d, b, c);
+  if (degenerate_then != degenerate_now) return degenerate_then < degenerate_now;
+  if (degenerate_now > 0) return false;
+  const double aligned_then = std::min(alignment(a, d, c), alignment(d, b, c));
+  if (aligned_then <= 0) return false;
+  if (std::min(alignment(a, b, c), alignment(b, a, d)) <= 0) return true;
+  return cotangent(c.position, a.position, b.position) + cotangent(d.position, a.position, b.position) < -kFlipMargin;
+}
+
+double circumradius(Vec3 a, Vec3 b, Vec3 c) {
+  const double twice_area = norm(cross(b - a, c - a));
+  if (!(twice_area > 0)) return std::numeric_limits<double>::infinity();
+  return distance(a, b) * distance(b, c) * distance(c, a) / (2 * twice_area);
+}
+
+std::optional<FacePoint> ball_centre(const Surface& surface, const Chart& chart, const std::array<Vec2, 3>& q,
+                                     const std::array<Vec3, 3>& p) {
+  const auto start = affine_centre(q, p);
+  if (!start) return std::nullopt;
+  const double radius = circumradius(p[0], p[1], p[2]);
+  const double reach = 2 * (diameter(q) + distance(*start, centroid(q)));
+  const Vec3 e1 = p[1] - p[0], e2 = p[2] - p[0];
+  const Vec3 m1 = 0.5 * (p[0] + p[1]), m2 = 0.5 * (p[0] + p[2]);
+  const double tolerance1 = kBallTolerance * radius * norm(e1), tolerance2 = kBallTolerance * radius * norm(e2);
+  Vec2 x = *start;
+  for (int step = 0; step < kNewtonSteps; ++step) {
+    if (!inside_chart(x) || distance(x, *start) > reach) return std::nullopt;
+    const Vec2 on_grid{snap(x.x), snap(x.y)};
+    const SurfaceFirst at = surface.first(chart.to_uv(on_grid));
+    const double f1 = dot(e1, at.value - m1), f2 = dot(e2, at.value - m2);
+    if (std::abs(f1) <= tolerance1 && std::abs(f2) <= tolerance2) {
+      if (distance(at.value, p[0]) > 1.5 * radius) return std::nullopt;
+      return FacePoint{on_grid, at};
+    }
+    const Vec3 dx = (1 / chart.scale_u) * at.du, dy = (1 / chart.scale_v) * at.dv;
+    const auto move = solve({dot(e1, dx), dot(e1, dy)}, {dot(e2, dx), dot(e2, dy)}, -f1, -f2);
+    if (!move) return std::nullopt;
+    x = x + *move;
+  }
+  return std::nullopt;
+}
+
+std::optional<Vec2> metric_centre(const Surface& surface, const Chart& chart, const std::array<Vec2, 3>& q) {
+  const SurfaceFirst at = surface.first(chart.to_uv(centroid(q)));
+  const Vec3 dx = (1 / chart.scale_u) * at.du, dy = (1 / chart.scale_v) * at.dv;
+  // A share of the trace on the diagonal bounds the condition number where a derivative collapses.
+  const double floor = 1e-6 * (norm2(dx) + norm2(dy));
+  const double e = norm2(dx) + floor, f = dot(dx, dy), g = norm2(dy) + floor;
+  const auto apply = [&](Vec2 v) { return Vec2{e * v.x + f * v.y, f * v.x + g * v.y}; };
+  const Vec2 r0 = apply(q[1] - q[0]), r1 = apply(q[2] - q[0]);
+  const auto offset = solve(r0, r1, 0.5 * dot(q[1] - q[0], r0), 0.5 * dot(q[2] - q[0], r1));
+  if (!offset) return std::nullopt;
+  const Vec2 centre = q[0] + *offset;
+  if (!inside_chart(centre)) return std::nullopt;
+  return Vec2{snap(centre.x), snap(centre.y)};
+}
+
+Vec3 unit_normal(const SurfaceFirst& at) {
+  const Vec3 normal = cross(at.du, at.dv);
+  const double length = norm(normal);
+  return length > 1e-9 * (norm2(at.du) + norm2(at.dv)) ? (1 / length) * normal : Vec3{};
+}
+
+FaceMesh::FlipWanted spatial_criterion(const FaceMesh& mesh, const VertexStore& vertices, const ModelFace& face) {
+  struct Normals {
+    std::vector<Vec3> value;
+    std::vector<bool> known;
+  };
+  const auto normals = std::make_shared<Normals>();
+  const auto corner = [&mesh, &vertices, &face, normals](NodeId n) {
+    if (n.value() >= normals->known.size()) {
+      normals->value.resize(mesh.node_count());
+      normals->known.resize(mesh.node_count(), false);
+    }
+    const FaceNode& node = mesh.node(n);
+    if (!normals->known[n.value()]) {
+      normals->value[n.value()] = face.surface->normal(mesh.chart.to_uv(node.q));
+      normals->known[n.value()] = true;
+    }
+    return Corner{node.vertex, vertices.position(node.vertex), normals->value[n.value()]};
+  };
+  return [corner](NodeId a, NodeId b, NodeId c, NodeId d) {
+    return flip_improves(corner(a), corner(b), corner(c), corner(d));
+  };
+}
+
+std::optional<Vec2> surface_ball_centre(const FaceMesh& mesh, TriangleId t, const VertexStore& vertices,
+                                        const ModelFace& face) {
+  std::array<Vec2, 3> q;
+  std::array<Vec3, 3> p;
+  for (std::size_t i = 0; i < 3; ++i) {
+    const FaceNode& node = mesh.node(mesh.triangle(t).node[i]);
+    q[i] = node.q;
+    p[i] = vertices.position(node.vertex);
+  }
+  if (const auto centre = ball_centre(*face.surface, mesh.chart, q, p)) return centre->q;
+  return ellipse_centre(mesh, t, face);
+}
+
+std::optional<Vec2> ellipse_centre(const FaceMesh& mesh, TriangleId t, const ModelFace& face) {
+  std::array<Vec2, 3> q;
+  for (std::size_t i = 0; i < 3; ++i) q[i] = mesh.node(mesh.triangle(t).node[i]).q;
+  return metric_centre(*face.surface, mesh.chart, q);
+}
+
+}  // namespace curvetet

@@ -1,0 +1,54 @@
+// The geometric decisions of a face mesh on plain values: when to flip, where to put a new point. No mesh in here, so
+// that refinement (which keeps corners in flat arrays) and recovery (which asks through a FaceMesh) decide alike.
+#pragma once
+
+#include <array>
+#include <optional>
+
+#include "base/ids.h"
+#include "base/vec.h"
+#include "geometry/surface.h"
+#include "planar/chart.h"
+
+namespace curvetet {
+
+/// A corner of a triangle of t_3d: its vertex, position and the unit normal du x dv there (zero where there is none).
+struct Corner {
+  VertexId vertex;
+  Vec3 position, normal;
+};
+
+/// True when two corners are the same vertex: the triangle is degenerate in space, though valid in the chart.
+bool degenerate(const Corner& a, const Corner& b, const Corner& c);
+
+/// Cosine of the angle between the triangle's normal and the mean of its corners' normals; 1 where one of them is
+/// undefined.
+double alignment(const Corner& a, const Corner& b, const Corner& c);
+
+/// Whether triangles (a,b,c) and (b,a,d) should become (a,d,c) and (d,b,c). In order: fewer degenerate triangles, fewer
+/// triangles that oppose the surface's normal, then Delaunay in space (angles at c and d exceed two right ones, with a
+/// margin).
+bool flip_improves(const Corner& a, const Corner& b, const Corner& c, const Corner& d);
+
+/// Radius of the smallest sphere through three points; infinite for collinear ones.
+double circumradius(Vec3 a, Vec3 b, Vec3 c);
+
+/// A point of a face, evaluated once.
+struct FacePoint {
+  Vec2 q;           ///< chart point, on the grid
+  SurfaceFirst at;  ///< the surface there
+};
+
+/// The point of the surface at the same distance from three points of it, by Newton's method from the chart image of
+/// their circumcentre. Equal to 1 % of the radius. Empty if the iteration leaves the neighbourhood of the triangle.
+std::optional<FacePoint> ball_centre(const Surface& surface, const Chart& chart, const std::array<Vec2, 3>& q,
+                                     const std::array<Vec3, 3>& p);
+
+/// Centre of the ellipse through three chart points in the metric of the surface at their centroid (the paper's
+/// choice).
+std::optional<Vec2> metric_centre(const Surface& surface, const Chart& chart, const std::array<Vec2, 3>& q);
+
+/// Unit normal du x dv from an evaluation, or zero where the derivatives collapse.
+Vec3 unit_normal(const SurfaceFirst& at);
+
+}  // namespace curvetet
