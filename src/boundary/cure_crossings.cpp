@@ -1,0 +1,125 @@
+// Of two triangles that cross, the one farther from its face is refined: a flat facet on a flat face is never the
+// culprit. Rejected: emptying equatorial spheres of all foreign vertices (the paper's rule), which on a thin shell asks
+// for elements as small as the wall is thin though no triangle crosses another.
+#include "boundary/cure_crossings.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <set>
+
+namespace curvetet {
+
+namespace {
+
+class CrossingCure {
+ public:
+  CrossingCure(Conjoint& conjoint, const CrossingOptions& options, Context& context)
+      : conjoint_(conjoint), options_(options), context_(context) {
+    refinement_.floor = options.floor;
+    refinement_.origin = Origin::stage_one;
+  }
+
+  Result<CrossingResult> run() {
+    for (result_.rounds = 0; result_.rounds <= options_.rounds; ++result_.rounds) {
+      if (context_.should_stop()) return context_.stop_error("surface crossings");
+      triangles_ = surface_triangles(conjoint_.boundary());
+      const auto pairs = crossing_pairs(conjoint_.vertices(), triangles_);
+      if (result_.rounds == 0) result_.first_pairs = pairs.size();
+      if (pairs.empty()) return result_;
+      if (result_.rounds == options_.rounds || !refine(pairs)) {
+        for (const auto& [i, j] : pairs) report(i, j);
+        return result_;
+      }
+    }
+    return result_;
+  }
+
+ private:
+  bool still_there(const SurfaceTriangle& t) const {
+    const FaceMesh& mesh = conjoint_.boundary().faces[t.face];
+    return mesh.triangle(t.triangle).alive() && mesh.vertices(t.triangle) == t.vertices;
+  }
+
+  bool refine(const std::vector<std::pair<std::uint32_t, std::uint32_t>>& pairs) {
+    bool any = false;
+    for (const auto& [i, j] : pairs) {
+      const SurfaceTriangle &a = triangles_[i], &b = triangles_[j];
+      if (!still_there(a) || !still_there(b)) continue;
+      const double da = deviation_of(a), db = deviation_of(b);
+      const bool a_first = da >= db;
+      if (refine_one(a_first ? a : b, std::max(da, db)) || refine_one(a_first ? b : a, std::min(da, db))) any = true;
+    }
+    return any;
+  }
+
+  double deviation_of(const SurfaceTriangle& t) const {
+    double largest = deviation(conjoint_, t.face, t.triangle);
+    for (std::size_t k = 0; k < 3; ++k) {
+      const EdgeId edge = conjoint_.segment_edge(t.vertices[k], t.vertices[(k + 1) % 3]);
+      if (edge.valid())
+        largest = std::max(largest, segment_deviation(conjoint_, edge, t.vertices[k], t.vertices[(k + 1) % 3]));
+    }
+    return largest;
+  }
+
+  // A segment that leaves its curve about as far as the triangle leaves its face is split first: a point inside the
+  // triangle would not move the chord.
+  bool refine_one(const SurfaceTriangle& t, double dev) {
+    if (dev <= 8 * kGrid) return false;
+    double worst = 0;
+    std::size_t at = 3;
+    for (std::size_t k = 0; k < 3; ++k) {
+      const VertexId a = t.vertices[k], b = t.vertices[(k + 1) % 3];
+      const EdgeId edge = conjoint_.segment_edge(a, b);
+      if (!edge.valid()) continue;
+      const double d = segment_deviation(conjoint_, edge, a, b);
+      if (d > worst) {
+        worst = d;
+        at = k;
+      }
+    }
+    ConjointResult done{ConjointRefusal::no_segment, {}};
+    if (at < 3 && worst > 0.5 * dev) {
+      const VertexId a = t.vertices[at], b = t.vertices[(at + 1) % 3];
+      done = refine_segment(conjoint_, conjoint_.segment_edge(a, b), a, b, refinement_);
+    }
+    if (!done.ok()) done = refine_triangle(conjoint_, t.face, t.triangle, refinement_);
+    if (done.ok()) ++result_.points;
+    return done.ok();
+  }
+
+  void report(std::uint32_t i, std::uint32_t j) {
+    const SurfaceTriangle &a = triangles_[i], &b = triangles_[j];
+    if (!reported_.insert({std::min(a.face, b.face), std::max(a.face, b.face)}).second) return;
+    RecoveryFailure failure;
+    failure.faces = {a.face, b.face};
+    double shortest = 1;
+    for (std::size_t k = 0; k < 3; ++k) {
+      const Vec3 p = conjoint_.vertices().position(a.vertices[k]);
+      failure.where = failure.where + (1.0 / 3) * p;
+      shortest = std::min(shortest, distance(p, conjoint_.vertices().position(a.vertices[(k + 1) % 3])));
+    }
+    failure.size = 0.5 * shortest;
+    failure.proved = deviation_of(a) <= 8 * kGrid && deviation_of(b) <= 8 * kGrid;
+    failure.what = failure.proved ? "flat facets that lie on their faces cross: the body crosses itself"
+                                  : "facets of the surface mesh cross";
+    result_.failures.push_back(failure);
+  }
+
+  Conjoint& conjoint_;
+  const CrossingOptions& options_;
+  Context& context_;
+  SurfaceRefinement refinement_;
+  CrossingResult result_;
+  std::vector<SurfaceTriangle> triangles_;
+  std::set<std::pair<FaceId, FaceId>> reported_;
+};
+
+}  // namespace
+
+Result<CrossingResult> cure_crossings(Conjoint& conjoint, const CrossingOptions& options, Context& context) {
+  return CrossingCure(conjoint, options, context).run();
+}
+
+}  // namespace curvetet

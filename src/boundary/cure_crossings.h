@@ -1,0 +1,36 @@
+// Refines t_3d until no two of its triangles cross: the paper's first stage (section 3.1) driven by crossings themselves.
+//
+// Before: valid face meshes. After (complete): no two triangles of t_3d cross, exactly. Terminates: each round splits at least
+// one triangle or segment, none below the floor, and the rounds are bounded.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "base/context.h"
+#include "boundary/refine_surface.h"
+
+namespace curvetet {
+
+/// Where recovery failed, in the form the outer loop needs.
+struct RecoveryFailure {
+  std::vector<FaceId> faces;
+  Vec3 where;        ///< working coordinates
+  double size = 0;   ///< that would do there
+  std::string what;
+  bool proved = false;  ///< the body itself is at fault: flat faces cross
+};
+
+struct CrossingOptions {
+  double floor = 0;
+  int rounds = 40;
+};
+struct CrossingResult {
+  std::size_t first_pairs = 0;  ///< crossings of the initial meshes
+  std::size_t points = 0;       ///< inserted
+  int rounds = 0;
+  std::vector<RecoveryFailure> failures;
+};
+Result<CrossingResult> cure_crossings(Conjoint& conjoint, const CrossingOptions& options, Context& context);
+
+}  // namespace curvetet

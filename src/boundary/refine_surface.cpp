@@ -1,0 +1,161 @@
+// The order of points follows how often they agree with the tetrahedralization: the surface ball's centre is the
+// spatial Delaunay criterion itself, the ellipse's centre is the paper's choice, the others are for triangles whose
+// centres fall far away.
+#include "boundary/refine_surface.h"
+
+#include <algorithm>
+#include <array>
+
+#include "boundary/boundary_mesh.h"
+
+namespace curvetet {
+
+namespace {
+
+double longest_edge(const VertexStore& vertices, const std::array<VertexId, 3>& v) {
+  double longest = 0;
+  for (std::size_t k = 0; k < 3; ++k)
+    longest = std::max(longest, distance(vertices.position(v[k]), vertices.position(v[(k + 1) % 3])));
+  return longest;
+}
+
+Vec2 chart_centroid(const FaceMesh& mesh, TriangleId t) {
+  const FaceTriangle& triangle = mesh.triangle(t);
+  Vec2 sum{};
+  for (NodeId n : triangle.node) sum = sum + mesh.node(n).q;
+  return (1.0 / 3) * sum;
+}
+
+class TriangleRefiner {
+ public:
+  TriangleRefiner(Conjoint& conjoint, FaceId face, TriangleId triangle, const SurfaceRefinement& options)
+      : conjoint_(conjoint),
+        face_(face),
+        mesh_(conjoint.boundary().faces[face]),
+        triangle_(triangle),
+        options_(options) {}
+
+  ConjointResult run() {
+    if (longest_edge(conjoint_.vertices(), mesh_.vertices(triangle_)) < options_.floor)
+      return {ConjointRefusal::too_small, {}};
+    const ModelFace& face = conjoint_.model().faces[face_];
+    ConjointResult last{ConjointRefusal::outside_domain, {}};
+    const std::array<std::optional<Vec2>, 4> points{surface_ball_centre(mesh_, triangle_, conjoint_.vertices(), face),
+                                                    ellipse_centre(mesh_, triangle_, face),
+                                                    chart_centroid(mesh_, triangle_), middle_of_longest_edge()};
+    for (const std::optional<Vec2>& q : points) {
+      if (!q) continue;
+      last = try_point(*q);
+      if (last.ok()) return last;
+    }
+    if (!options_.split_curves) return last;
+    return split_longest_segment(triangle_, last);
+  }
+
+ private:
+  std::optional<Vec2> middle_of_longest_edge() const {
+    const FaceTriangle& t = mesh_.triangle(triangle_);
+    double longest = -1;
+    Vec2 middle{};
+    for (std::size_t k = 0; k < 3; ++k) {
+      if (t.use[k] >= 0) continue;
+      const FaceNode &a = mesh_.node(t.node[(k + 1) % 3]), &b = mesh_.node(t.node[(k + 2) % 3]);
+      const double length = distance(conjoint_.vertices().position(a.vertex), conjoint_.vertices().position(b.vertex));
+      if (length > longest) {
+        longest = length;
+        middle = 0.5 * (a.q + b.q);
+      }
+    }
+    return longest < 0 ? std::nullopt : std::optional<Vec2>(middle);
+  }
+
+  ConjointResult try_point(Vec2 q) {
+    const Vec2 on_grid = mesh_.chart.to_chart(mesh_.chart.to_uv(q));
+    const auto at = mesh_.locate(on_grid, triangle_);
+    if (!at) return {ConjointRefusal::outside_domain, {}};
+    const Vec3 p = conjoint_.model().faces[face_].surface->value(mesh_.chart.to_uv(on_grid));
+    for (VertexId v : mesh_.vertices(*at))
+      if (distance(conjoint_.vertices().position(v), p) < 0.25 * options_.floor)
+        return {ConjointRefusal::too_small, {}};
+    if (const auto split = split_encroached(*at, p)) return *split;
+    return conjoint_.insert_on_face(face_, on_grid, *at, options_.origin);
+  }
+
+  // The segment of the triangle whose diametral sphere holds p, split; nothing if there is none.
+  std::optional<ConjointResult> split_encroached(TriangleId at, Vec3 p) {
+    const FaceTriangle& t = mesh_.triangle(at);
+    for (std::size_t k = 0; k < 3; ++k) {
+      if (t.use[k] < 0) continue;
+      const VertexId a = mesh_.node(t.node[(k + 1) % 3]).vertex, b = mesh_.node(t.node[(k + 2) % 3]).vertex;
+      if (a == b) continue;
+      const Vec3 pa = conjoint_.vertices().position(a), pb = conjoint_.vertices().position(b);
+      if (dot(pa - p, pb - p) >= 0) continue;
+      if (!options_.split_curves) return ConjointResult{ConjointRefusal::curved_segment, {}};
+      const EdgeId edge = conjoint_.boundary().uses[face_][static_cast<std::size_t>(t.use[k])].edge;
+      return refine_segment(conjoint_, edge, a, b, options_);
+    }
+    return std::nullopt;
+  }
+
+  ConjointResult split_longest_segment(TriangleId at, ConjointResult otherwise) {
+    const FaceTriangle& t = mesh_.triangle(at);
+    double longest = 0;
+    std::size_t best = 3;
+    for (std::size_t k = 0; k < 3; ++k) {
+      if (t.use[k] < 0) continue;
+      const double length = distance(conjoint_.vertices().position(mesh_.node(t.node[(k + 1) % 3]).vertex),
+                                     conjoint_.vertices().position(mesh_.node(t.node[(k + 2) % 3]).vertex));
+      if (length > longest) {
+        longest = length;
+        best = k;
+      }
+    }
+    if (best == 3) return otherwise;
+    const EdgeId edge = conjoint_.boundary().uses[face_][static_cast<std::size_t>(t.use[best])].edge;
+    return refine_segment(conjoint_, edge, mesh_.node(t.node[(best + 1) % 3]).vertex,
+                          mesh_.node(t.node[(best + 2) % 3]).vertex, options_);
+  }
+
+  Conjoint& conjoint_;
+  FaceId face_;
+  FaceMesh& mesh_;
+  TriangleId triangle_;
+  const SurfaceRefinement& options_;
+};
+
+}  // namespace
+
+ConjointResult refine_triangle(Conjoint& conjoint, FaceId face, TriangleId triangle, const SurfaceRefinement& options) {
+  return TriangleRefiner(conjoint, face, triangle, options).run();
+}
+
+ConjointResult refine_segment(Conjoint& conjoint, EdgeId edge, VertexId a, VertexId b,
+                              const SurfaceRefinement& options) {
+  if (distance(conjoint.vertices().position(a), conjoint.vertices().position(b)) < options.floor)
+    return {ConjointRefusal::too_small, {}};
+  if (options.before_split) options.before_split(edge);
+  return conjoint.split_segment(edge, a, b, options.origin);
+}
+
+double deviation(const Conjoint& conjoint, FaceId face, TriangleId triangle) {
+  const FaceMesh& mesh = conjoint.boundary().faces[face];
+  Vec3 centroid{};
+  for (VertexId v : mesh.vertices(triangle)) centroid = centroid + (1.0 / 3) * conjoint.vertices().position(v);
+  const Vec2 uv = mesh.chart.to_uv(chart_centroid(mesh, triangle));
+  return distance(centroid, conjoint.model().faces[face].surface->value(uv));
+}
+
+double segment_deviation(const Conjoint& conjoint, EdgeId edge, VertexId a, VertexId b) {
+  const CurveMesh& curve = conjoint.boundary().curves[edge];
+  for (std::size_t i = 0; i + 1 < curve.vertices.size(); ++i) {
+    const bool same = (curve.vertices[i] == a && curve.vertices[i + 1] == b) ||
+                      (curve.vertices[i] == b && curve.vertices[i + 1] == a);
+    if (!same) continue;
+    const double t = 0.5 * (curve.parameters[i] + curve.parameters[i + 1]);
+    const Vec3 middle = 0.5 * (conjoint.vertices().position(a) + conjoint.vertices().position(b));
+    return distance(middle, conjoint.model().edges[edge].curve->value(t));
+  }
+  return 0;
+}
+
+}  // namespace curvetet

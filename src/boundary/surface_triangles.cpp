@@ -1,0 +1,184 @@
+// Crossing triangles are found with a bounding volume hierarchy (median split, boxes in one flat array) and decided
+// exactly. A plane sweep was rejected: CAD triangles differ too much in size.
+#include "boundary/surface_triangles.h"
+
+#include <algorithm>
+#include <numeric>
+
+#include "predicates/predicates.h"
+
+namespace curvetet {
+
+std::vector<SurfaceTriangle> surface_triangles(const FaceMesh& mesh, FaceId face) {
+  std::vector<SurfaceTriangle> list;
+  for (std::size_t t = 0; t < mesh.triangle_slots(); ++t) {
+    const TriangleId id(t);
+    if (!mesh.triangle(id).alive()) continue;
+    const std::array<VertexId, 3> v = mesh.vertices(id);
+    if (v[0] != v[1] && v[1] != v[2] && v[2] != v[0]) list.push_back({face, id, v});
+  }
+  return list;
+}
+
+std::vector<SurfaceTriangle> surface_triangles(const BoundaryMesh& boundary) {
+  std::vector<SurfaceTriangle> all;
+  for (std::size_t f = 0; f < boundary.faces.size(); ++f) {
+    const auto list = surface_triangles(boundary.faces[FaceId(f)], FaceId(f));
+    all.insert(all.end(), list.begin(), list.end());
+  }
+  return all;
+}
+
+FacetKey facet_key(VertexId a, VertexId b, VertexId c) {
+  FacetKey key{a.value(), b.value(), c.value()};
+  std::sort(key.begin(), key.end());
+  return key;
+}
+
+namespace {
+
+using Triple = std::array<VertexId, 3>;
+
+struct Shared {
+  int count = 0;
+  std::array<int, 3> in_a{}, in_b{};  // local indices of the shared vertices
+};
+
+Shared shared_vertices(const Triple& a, const Triple& b) {
+  Shared s;
+  for (int i = 0; i < 3; ++i)
+    for (int j = 0; j < 3; ++j)
+      if (a[static_cast<std::size_t>(i)] == b[static_cast<std::size_t>(j)] && s.count < 3) {
+        s.in_a[static_cast<std::size_t>(s.count)] = i;
+        s.in_b[static_cast<std::size_t>(s.count)] = j;
+        ++s.count;
+      }
+  return s;
+}
+
+// Two triangles over one edge overlap exactly when they are coplanar with both apexes on the same side of the edge.
+bool overlap_over_edge(Vec3 p, Vec3 q, Vec3 c, Vec3 d) {
+  if (orient3d(p, q, c, d) != 0) return false;
+  for (int axis = 0; axis < 3; ++axis) {
+    const int sc = orient2d_dropped(p, q, c, axis), sd = orient2d_dropped(p, q, d, axis);
+    if (sc != 0 || sd != 0) return sc == sd;
+  }
+  return true;
+}
+
+class TriangleTree {
+ public:
+  TriangleTree(const VertexStore& vertices, const std::vector<SurfaceTriangle>& triangles)
+      : vertices_(vertices), triangles_(triangles), order_(triangles.size()) {
+    boxes_.resize(triangles.size());
+    for (std::size_t i = 0; i < triangles.size(); ++i)
+      for (VertexId v : triangles[i].vertices) boxes_[i].extend(vertices.position(v));
+    std::iota(order_.begin(), order_.end(), 0U);
+    if (!triangles.empty()) build(0, order_.size());
+  }
+
+  std::vector<std::pair<std::uint32_t, std::uint32_t>> crossings() const {
+    std::vector<std::pair<std::uint32_t, std::uint32_t>> found;
+    for (std::uint32_t i = 0; i < triangles_.size(); ++i) query(i, found);
+    std::sort(found.begin(), found.end());
+    return found;
+  }
+
+ private:
+  struct Node {
+    Box3 box;
+    std::uint32_t begin = 0, end = 0, right = 0;  // right child; the left one follows its parent; 0: leaf
+  };
+
+  static bool meet(const Box3& a, const Box3& b) {
+    for (int k = 0; k < 3; ++k)
+      if (a.low[k] > b.high[k] || b.low[k] > a.high[k]) return false;
+    return true;
+  }
+
+  std::uint32_t build(std::size_t begin, std::size_t end) {
+    const auto at = static_cast<std::uint32_t>(nodes_.size());
+    Node node;
+    node.begin = static_cast<std::uint32_t>(begin);
+    node.end = static_cast<std::uint32_t>(end);
+    for (std::size_t i = begin; i < end; ++i) {
+      node.box.extend(boxes_[order_[i]].low);
+      node.box.extend(boxes_[order_[i]].high);
+    }
+    nodes_.push_back(node);
+    if (end - begin <= 4) return at;
+    const Vec3 extent = node.box.high - node.box.low;
+    const int axis = extent.x >= extent.y && extent.x >= extent.z ? 0 : extent.y >= extent.z ? 1 : 2;
+    const auto key = [&](std::uint32_t i) { return boxes_[i].low[axis] + boxes_[i].high[axis]; };
+    const std::size_t middle = (begin + end) / 2;
+    const auto first = order_.begin();
+    std::nth_element(first + static_cast<std::ptrdiff_t>(begin), first + static_cast<std::ptrdiff_t>(middle),
+                     first + static_cast<std::ptrdiff_t>(end),
+                     [&](std::uint32_t i, std::uint32_t j) { return key(i) != key(j) ? key(i) < key(j) : i < j; });
+    build(begin, middle);
+    nodes_[at].right = build(middle, end);
+    return at;
+  }
+
+  void query(std::uint32_t i, std::vector<std::pair<std::uint32_t, std::uint32_t>>& found) const {
+    std::vector<std::uint32_t> stack{0};
+    while (!stack.empty()) {
+      const std::uint32_t at = stack.back();
+      const Node& node = nodes_[at];
+      stack.pop_back();
+      if (!meet(node.box, boxes_[i])) continue;
+      if (node.right != 0) {
+        stack.push_back(at + 1);
+        stack.push_back(node.right);
+        continue;
+      }
+      for (std::uint32_t k = node.begin; k < node.end; ++k) {
+        const std::uint32_t j = order_[k];
+        if (j > i && meet(boxes_[i], boxes_[j]) &&
+            triangles_cross(vertices_, triangles_[i].vertices, triangles_[j].vertices))
+          found.emplace_back(i, j);
+      }
+    }
+  }
+
+  const VertexStore& vertices_;
+  const std::vector<SurfaceTriangle>& triangles_;
+  std::vector<Box3> boxes_;
+  std::vector<std::uint32_t> order_;
+  std::vector<Node> nodes_;
+};
+
+}  // namespace
+
+bool triangles_cross(const VertexStore& vertices, const Triple& a, const Triple& b) {
+  const Shared s = shared_vertices(a, b);
+  if (s.count == 3) return false;
+  std::array<Vec3, 3> p{}, q{};
+  for (std::size_t k = 0; k < 3; ++k) {
+    p[k] = vertices.position(a[k]);
+    q[k] = vertices.position(b[k]);
+  }
+  const auto index = [](int i) { return static_cast<std::size_t>(i); };
+  if (s.count == 2) {
+    const std::size_t ca = index(3 - s.in_a[0] - s.in_a[1]), cb = index(3 - s.in_b[0] - s.in_b[1]);
+    return overlap_over_edge(p[index(s.in_a[0])], p[index(s.in_a[1])], p[ca], q[cb]);
+  }
+  if (s.count == 1) {
+    // Any meeting away from the shared vertex involves the edge opposite to it in one of the two triangles.
+    const std::size_t i = index(s.in_a[0]), j = index(s.in_b[0]);
+    return segment_triangle(p[(i + 1) % 3], p[(i + 2) % 3], q[0], q[1], q[2]) != SegmentTriangle::disjoint ||
+           segment_triangle(q[(j + 1) % 3], q[(j + 2) % 3], p[0], p[1], p[2]) != SegmentTriangle::disjoint;
+  }
+  for (std::size_t k = 0; k < 3; ++k)
+    if (segment_triangle(p[k], p[(k + 1) % 3], q[0], q[1], q[2]) != SegmentTriangle::disjoint ||
+        segment_triangle(q[k], q[(k + 1) % 3], p[0], p[1], p[2]) != SegmentTriangle::disjoint)
+      return true;
+  return false;
+}
+
+std::vector<std::pair<std::uint32_t, std::uint32_t>> crossing_pairs(const VertexStore& vertices,
+                                                                    const std::vector<SurfaceTriangle>& triangles) {
+  return TriangleTree(vertices, triangles).crossings();
+}
+
+}  // namespace curvetet

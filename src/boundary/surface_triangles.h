@@ -1,0 +1,35 @@
+// t_3d of the whole body as one list, and the exact test that no two of its triangles cross.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "conjoint/surface_meshes.h"
+#include "mesh/vertex_store.h"
+
+namespace curvetet {
+
+/// A triangle of some t_3d with three different vertices.
+struct SurfaceTriangle {
+  FaceId face;
+  TriangleId triangle;
+  std::array<VertexId, 3> vertices;  ///< turn left in the chart
+};
+
+/// All triangles of t_3d, in the order of faces and triangles; those that collapse in space (at poles) are left out.
+std::vector<SurfaceTriangle> surface_triangles(const BoundaryMesh& boundary);
+std::vector<SurfaceTriangle> surface_triangles(const FaceMesh& mesh, FaceId face);
+
+/// Sorted vertex values: the identity of a facet.
+using FacetKey = std::array<std::uint32_t, 3>;
+FacetKey facet_key(VertexId a, VertexId b, VertexId c);
+
+/// Do two triangles meet elsewhere than in shared vertices and edges? Exact.
+bool triangles_cross(const VertexStore& vertices, const std::array<VertexId, 3>& a, const std::array<VertexId, 3>& b);
+
+/// All pairs (i < j) of triangles that cross, sorted. Bounding volume hierarchy, then the exact test; O(n log n + pairs).
+std::vector<std::pair<std::uint32_t, std::uint32_t>> crossing_pairs(const VertexStore& vertices,
+                                                                    const std::vector<SurfaceTriangle>& triangles);
+
+}  // namespace curvetet
