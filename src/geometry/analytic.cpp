@@ -170,6 +170,16 @@ class ParameterLine final : public ParameterCurve {
   Vec2 origin_, direction_;
 };
 
+class ParameterEllipse final : public ParameterCurve {
+ public:
+  ParameterEllipse(Vec2 origin, Vec2 x, Vec2 y) : origin_(origin), x_(x), y_(y) {}
+  Vec2 value(double t) const override { return origin_ + std::cos(t) * x_ + std::sin(t) * y_; }
+  std::unique_ptr<ParameterCurve> clone() const override { return std::make_unique<ParameterEllipse>(*this); }
+
+ private:
+  Vec2 origin_, x_, y_;
+};
+
 }  // namespace
 
 std::unique_ptr<Surface> make_plane(const Placement& at) { return std::make_unique<Plane>(at); }
@@ -202,6 +212,10 @@ std::unique_ptr<Curve> make_ellipse(const Placement& at, double major, double mi
 
 std::unique_ptr<ParameterCurve> make_parameter_line(Vec2 origin, Vec2 direction) {
   return std::make_unique<ParameterLine>(origin, direction);
+}
+
+std::unique_ptr<ParameterCurve> make_parameter_ellipse(Vec2 origin, Vec2 x, Vec2 y) {
+  return std::make_unique<ParameterEllipse>(origin, x, y);
 }
 
 }  // namespace curvetet

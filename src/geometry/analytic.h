@@ -34,5 +34,7 @@ std::unique_ptr<Curve> make_ellipse(const Placement& at, double major, double mi
 
 /// origin + t direction in the parameter plane.
 std::unique_ptr<ParameterCurve> make_parameter_line(Vec2 origin, Vec2 direction);
+/// origin + cos t x + sin t y in the parameter plane.
+std::unique_ptr<ParameterCurve> make_parameter_ellipse(Vec2 origin, Vec2 x, Vec2 y);
 
 }  // namespace curvetet
