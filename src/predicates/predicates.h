@@ -1,5 +1,5 @@
-// Exact geometric predicates on grid points (geometry/frame.h): signs only, by a ladder of filter, double-double or
-// expansion, fixed width; and the perturbed family, which is never zero.
+// Exact geometric predicates on grid points (geometry/frame.h): signs only, by a ladder of filter, narrow
+// integers, fixed width; and the perturbed family, which is never zero.
 //
 // orient3d(a,b,c,d) is the sign of det[b-a, c-a, d-a]: (0,0,0), (1,0,0), (0,1,0), (0,0,1) is positive.
 //   1. An even permutation of the arguments keeps the sign, an odd one negates it.
@@ -9,6 +9,7 @@
 // REQUIRED for all: every coordinate is a multiple of 2^-42 with absolute value at most 1.
 #pragma once
 
+#include <array>
 #include <cstdint>
 
 #include "base/ids.h"
@@ -24,6 +25,10 @@ int insphere(Vec3 a, Vec3 b, Vec3 c, Vec3 d, Vec3 e);
 /// points a..d are coplanar. The result is that of infinitesimally perturbed points: consistent over all calls.
 int insphere_perturbed(const Vec3* positions, VertexId a, VertexId b, VertexId c, VertexId d, VertexId e);
 
+/// The second half of insphere_perturbed, for callers that hold the points by other means: the sign that the perturbation
+/// gives to five points a..e whose insphere is zero.
+int insphere_tie(const std::array<Vec3, 5>& points, const std::array<VertexId, 5>& ids);
+
 /// Points of a face mesh's chart (planar/chart): every coordinate a multiple of 2^-42, absolute value at most 1.
 /// Sign of cross(b-a, c-a): +1 when a,b,c turn left. Exact.
 int orient2d(Vec2 a, Vec2 b, Vec2 c);
@@ -36,7 +41,8 @@ bool collinear(Vec3 a, Vec3 b, Vec3 c);
 
 /// How a closed triangle abc and a closed segment pq meet, exactly.
 enum class SegmentTriangle { disjoint, touches, crosses };
-/// `crosses`: the segment's interior passes through the triangle's interior; `touches`: any other common point.
+/// `crosses`: the segment's interior passes through the triangle's interior, from one side to the other; `touches`: any
+/// other common point, also of a segment in the triangle's plane. A degenerate triangle is only ever touched.
 SegmentTriangle segment_triangle(Vec3 p, Vec3 q, Vec3 a, Vec3 b, Vec3 c);
 
 /// Counts of decisions per rung on this thread, for tests and benchmarks.
