@@ -44,6 +44,15 @@ struct ReductionReport {
   Point where{};
 };
 
+/// Counts of recovery as a whole; those of the paper's remeshing cases are of `--recovery paper` only.
+struct RecoveryCounts {
+  std::size_t crossings = 0;         ///< pairs of triangles of the first t_3d that crossed
+  std::size_t edge_flips = 0, edge_splits = 0;
+  int rounds = 0;
+  std::size_t stage_one_points = 0, stage_one_allowed = 0, stage_two_points = 0;
+  std::size_t case1 = 0, case3a = 0, case3b = 0, case4 = 0, fallback_faces = 0;
+};
+
 struct Report {
   int schema = 1;
   std::string version, input, input_hash, unit, mode;
@@ -53,6 +62,7 @@ struct Report {
   std::size_t points = 0, tets = 0, triangles = 0, segments = 0;
   std::size_t initial_surface_points = 0;
   int rounds = 0;  ///< of the outer loop; 0: none was needed
+  RecoveryCounts recovery;
   std::vector<ReductionReport> reductions;
   std::vector<FaceReport> faces;
   std::vector<SolidReport> solids;

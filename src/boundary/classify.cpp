@@ -1,11 +1,11 @@
-// Components are flooded first, then each is given the solid that its locked facets name; a component whose facets disagree is
-// a contradiction and names the two faces. The side of a facet follows from the orientation of its triangle in t_ps and of its
-// face, never from a coarse facet's own normal.
+// Components are flooded first, then each is given the solid that its locked facets name; a component whose facets
+// disagree is a contradiction and names the two faces. The side of a facet follows from the orientation of its triangle
+// in t_ps and of its face, never from a coarse facet's own normal.
 #include "boundary/classify.h"
 
-#include <map>
-
 #include <fmt/format.h>
+
+#include <map>
 
 #include "boundary/surface_triangles.h"
 
@@ -104,13 +104,18 @@ class Classification {
       ++result_.tets[c.solid];
       const auto& v = complex_.vertices(t);
       const Vec3 a = conjoint_.vertices().position(v[0]);
-      result_.volumes[c.solid] += dot(cross(conjoint_.vertices().position(v[1]) - a, conjoint_.vertices().position(v[2]) - a),
-                                      conjoint_.vertices().position(v[3]) - a) / 6;
+      result_.volumes[c.solid] +=
+          dot(cross(conjoint_.vertices().position(v[1]) - a, conjoint_.vertices().position(v[2]) - a),
+              conjoint_.vertices().position(v[3]) - a) /
+          6;
     }
     for (std::size_t s = 0; s < result_.tets.size(); ++s)
       if (result_.tets[SolidId(s)] == 0)
-        result_.failures.push_back({conjoint_.model().solids[SolidId(s)].faces, {}, 0,
-                                    fmt::format("solid {} got no tets", conjoint_.model().solids[SolidId(s)].label.cad_id)});
+        result_.failures.push_back(
+            {conjoint_.model().solids[SolidId(s)].faces,
+             {},
+             0,
+             fmt::format("solid {} got no tets", conjoint_.model().solids[SolidId(s)].label.cad_id)});
   }
 
   Conjoint& conjoint_;

@@ -1,7 +1,7 @@
 // Tets into solids and outside, by flooding across unlocked facets; contradictions with the CAD are failures.
 //
-// Before: all faces locked. After (no failures): region(t) is SolidId.value() + 1, or 0 outside; every locked facet has on its two sides
-// the solids the CAD says; every solid has tets.
+// Before: all faces locked. After (no failures): region(t) is SolidId.value() + 1, or 0 outside; every locked facet has
+// on its two sides the solids the CAD says; every solid has tets.
 #pragma once
 
 #include <vector>

@@ -1,7 +1,8 @@
-// Refines t_3d until no two of its triangles cross: the paper's first stage (section 3.1) driven by crossings themselves.
+// Refines t_3d until no two of its triangles cross: the paper's first stage (section 3.1) driven by crossings
+// themselves.
 //
-// Before: valid face meshes. After (complete): no two triangles of t_3d cross, exactly. Terminates: each round splits at least
-// one triangle or segment, none below the floor, and the rounds are bounded.
+// Before: valid face meshes. After (complete): no two triangles of t_3d cross, exactly. Terminates: each round splits
+// at least one triangle or segment, none below the floor, and the rounds are bounded.
 #pragma once
 
 #include <string>
@@ -15,8 +16,8 @@ namespace curvetet {
 /// Where recovery failed, in the form the outer loop needs.
 struct RecoveryFailure {
   std::vector<FaceId> faces;
-  Vec3 where;        ///< working coordinates
-  double size = 0;   ///< that would do there
+  Vec3 where;       ///< working coordinates
+  double size = 0;  ///< that would do there
   std::string what;
   bool proved = false;  ///< the body itself is at fault: flat faces cross
 };

@@ -1,11 +1,11 @@
-// A segment that the Delaunay tetrahedralization lacks is reconnected by flips where that works, since that adds nothing;
-// otherwise it is split on its curve, in every triangulation at once. Kept segments survive all later insertions, so one
-// pass over a queue is enough.
+// A segment that the Delaunay tetrahedralization lacks is reconnected by flips where that works, since that adds
+// nothing; otherwise it is split on its curve, in every triangulation at once. Kept segments survive all later
+// insertions, so one pass over a queue is enough.
 #include "boundary/edge_recovery.h"
 
-#include <deque>
-
 #include <fmt/format.h>
+
+#include <deque>
 
 #include "spatial/flips.h"
 

@@ -1,4 +1,5 @@
-// Every segment of every curve mesh becomes an edge of the tetrahedralization (the paper's section 2) and is kept from then on.
+// Every segment of every curve mesh becomes an edge of the tetrahedralization (the paper's section 2) and is kept from
+// then on.
 //
 // Before: all boundary vertices are in the tetrahedralization. After (no failures): each segment is an edge and kept.
 // Terminates: a split halves a segment that is longer than the floor.
@@ -13,8 +14,9 @@ namespace curvetet {
 
 struct EdgeRecoveryOptions {
   double floor = 0;
-  bool flips = true;            ///< try to reconnect without a point first; off: the paper's splitting
-  bool split_encroached = false;  ///< split a segment whose diametral sphere holds a vertex on no face of its curve (paper)
+  bool flips = true;  ///< try to reconnect without a point first; off: the paper's splitting
+  bool split_encroached =
+      false;  ///< split a segment whose diametral sphere holds a vertex on no face of its curve (paper)
   std::function<void(EdgeId)> before_split;
 };
 struct EdgeRecoveryResult {

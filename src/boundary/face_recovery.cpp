@@ -1,13 +1,13 @@
-// A round: segments, then a march over every face that is not locked, then reconnection by flips for the faces the march
-// left, then one vertex for each triangle that is still missing. A face is locked as soon as it is complete, so that
-// what is recovered stays recovered; a curve that must be split unlocks the faces on it, which is counted.
+// A round: segments, then a march over every face that is not locked, then reconnection by flips for the faces the
+// march left, then one vertex for each triangle that is still missing. A face is locked as soon as it is complete, so
+// that what is recovered stays recovered; a curve that must be split unlocks the faces on it, which is counted.
 // Rejected: refining before reconnecting. It converges too, but to a mesh much finer than asked wherever faces meet at
 // small angles.
 #include "boundary/face_recovery.h"
 
-#include <algorithm>
-
 #include <fmt/format.h>
+
+#include <algorithm>
 
 #include "boundary/edge_recovery.h"
 #include "boundary/reconnect.h"
@@ -58,7 +58,9 @@ class FaceRecovery {
   }
 
  private:
-  bool all_recovered() const { return std::all_of(recovered_.begin(), recovered_.end(), [](bool r) { return r; }); }
+  bool all_recovered() const {
+    return std::all_of(recovered_.begin(), recovered_.end(), [](bool r) { return r; });
+  }
 
   Status drain_edges() {
     EdgeRecoveryOptions options;
@@ -102,8 +104,8 @@ class FaceRecovery {
       if (!recovered_[face]) march(face);
       done += recovered_[face] ? 1U : 0U;
     }
-    context_.log(LogLevel::debug, fmt::format("round {}: {} of {} faces after the march", result_.rounds, done,
-                                              recovered_.size()));
+    context_.log(LogLevel::debug,
+                 fmt::format("round {}: {} of {} faces after the march", result_.rounds, done, recovered_.size()));
     return Done{};
   }
 

@@ -1,9 +1,10 @@
-// Recovery of all curved faces: march, reconnect without points, refine conjointly, lock (the paper's sections 3.2 to 3.5, in
-// the order DESIGN's improved default asks for).
+// Recovery of all curved faces: march, reconnect without points, refine conjointly, lock (the paper's sections 3.2
+// to 3.5, in the order DESIGN's improved default asks for).
 //
-// Before: valid face meshes free of crossings, all their vertices in the tetrahedralization, segments recovered and kept.
-// After (complete): for each face the triangles of t_ps are facets of the tetrahedralization, locked for the face; no locked facet
-// was ever split while locked. Terminates: rounds are bounded, every round inserts at least one vertex above the floor.
+// Before: valid face meshes free of crossings, all their vertices in the tetrahedralization, segments recovered and
+// kept. After (complete): for each face the triangles of t_ps are facets of the tetrahedralization, locked for the
+// face; no locked facet was ever split while locked. Terminates: rounds are bounded, every round inserts at least one
+// vertex above the floor.
 #pragma once
 
 #include <cstdint>
@@ -18,11 +19,11 @@ namespace curvetet {
 
 /// What recovery did to one face; becomes its certificate in the report.
 struct FaceCertificate {
-  std::set<FacetKey> initial;         ///< t_3d when recovery began
-  std::size_t triangles = 0;          ///< in T_Γ
-  std::size_t coincide = 0;           ///< of them also in the t_3d recovery began with
-  std::size_t marched = 0;            ///< triangles replaced by the march
-  std::size_t reconnected = 0;        ///< facets recovered by flips, without points
+  std::set<FacetKey> initial;   ///< t_3d when recovery began
+  std::size_t triangles = 0;    ///< in T_Γ
+  std::size_t coincide = 0;     ///< of them also in the t_3d recovery began with
+  std::size_t marched = 0;      ///< triangles replaced by the march
+  std::size_t reconnected = 0;  ///< facets recovered by flips, without points
   std::size_t unlocks = 0, relocks = 0, steiner = 0;
   std::uint64_t hash_locked = 0;
   bool fallback = false;

@@ -1,6 +1,7 @@
-// The march works on nodes of the chart, not on vertices: a seam vertex is two nodes, so that an edge of the chart's border
-// is external (one triangle) and any other internal (two), with no special case for seams and poles, and condition 4
-// is one exact orientation in the chart. Rejected: the paper's three closest-point probes for the side of a seam.
+// The march works on nodes of the chart, not on vertices: a seam vertex is two nodes, so that an edge of the chart's
+// border is external (one triangle) and any other internal (two), with no special case for seams and poles, and
+// condition 4 is one exact orientation in the chart. Rejected: the paper's three closest-point probes for the side of a
+// seam.
 //
 // After the march the holes of t_ps (connected sets of missing triangles) are judged one by one: a hole has been
 // closed when as many marked facets with the same chart area lie in it, since over fixed nodes and border the number of
@@ -148,7 +149,8 @@ class March {
     }
   }
 
-  // Facets around the edge that satisfy conditions 1-4; the marked triangle lies to the left of m -> o, a candidate to the right.
+  // Facets around the edge that satisfy conditions 1-4; the marked triangle lies to the left of m -> o, a candidate to
+  // the right.
   int candidates(NodeId m, NodeId o, NodeId& only) {
     const VertexId vm = mesh_.node(m).vertex, vo = mesh_.node(o).vertex;
     const auto edge = tets_.find_edge(vm, vo);

@@ -1,5 +1,5 @@
-// The march of the paper's second stage (section 3.2): from the triangles of t_3d that are facets already, over the facets of the
-// tetrahedralization, to a set T_Γ that satisfies requirements I-VI, under conditions 1-4.
+// The march of the paper's second stage (section 3.2): from the triangles of t_3d that are facets already, over the
+// facets of the tetrahedralization, to a set T_Γ that satisfies requirements I-VI, under conditions 1-4.
 #pragma once
 
 #include <array>
@@ -18,11 +18,12 @@ struct StuckEdge {
 };
 
 struct MarchResult {
-  bool complete = false;                ///< T_Γ found, requirements I-VI hold
-  std::size_t seeds = 0;                ///< triangles of t_ps that are facets
-  std::size_t total = 0;                ///< triangles of t_ps with three different vertices
-  std::vector<NodeTriple> triangles;    ///< of the face, over nodes: T_Γ if complete; else t_ps with the holes that closed replaced
-  std::vector<TriangleId> missing;      ///< triangles of t_ps that are no facets (before anything is replaced)
+  bool complete = false;  ///< T_Γ found, requirements I-VI hold
+  std::size_t seeds = 0;  ///< triangles of t_ps that are facets
+  std::size_t total = 0;  ///< triangles of t_ps with three different vertices
+  std::vector<NodeTriple>
+      triangles;  ///< of the face, over nodes: T_Γ if complete; else t_ps with the holes that closed replaced
+  std::vector<TriangleId> missing;  ///< triangles of t_ps that are no facets (before anything is replaced)
   std::vector<StuckEdge> stuck;
 };
 

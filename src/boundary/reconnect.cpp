@@ -1,5 +1,5 @@
-// All edges first, each kept as soon as it is there, then the facets: a facet can only be recovered once its edges are. The
-// existing facets of the face are locked for the time being, so that one gain does not undo another.
+// All edges first, each kept as soon as it is there, then the facets: a facet can only be recovered once its edges are.
+// The existing facets of the face are locked for the time being, so that one gain does not undo another.
 #include "boundary/reconnect.h"
 
 #include "spatial/flips.h"

@@ -9,19 +9,20 @@
 namespace curvetet {
 
 struct SurfaceRefinement {
-  double floor = 0;               ///< never refine below this spacing (working units)
+  double floor = 0;  ///< never refine below this spacing (working units)
   Origin origin = Origin::stage_two;
-  bool split_curves = true;       ///< curves may be split where a point would encroach one
+  bool split_curves = true;                  ///< curves may be split where a point would encroach one
   std::function<void(EdgeId)> before_split;  ///< called before a curve is split (to unlock the faces on it)
 };
 
-/// Refines at a triangle of a face mesh: centre of the surface Delaunay ball, centre of the circumscribed ellipse, centroid,
-/// middle of the longest edge, split of a curve; the first that no triangulation refuses. A point inside the diametral
-/// sphere of a segment of the triangle it falls into splits that segment instead (Ruppert).
+/// Refines at a triangle of a face mesh: centre of the surface Delaunay ball, centre of the circumscribed ellipse,
+/// centroid, middle of the longest edge, split of a curve; the first that no triangulation refuses. A point inside the
+/// diametral sphere of a segment of the triangle it falls into splits that segment instead (Ruppert).
 ConjointResult refine_triangle(Conjoint& conjoint, FaceId face, TriangleId triangle, const SurfaceRefinement& options);
 
 /// Splits the segment ab of a curve, unless it is at the floor already.
-ConjointResult refine_segment(Conjoint& conjoint, EdgeId edge, VertexId a, VertexId b, const SurfaceRefinement& options);
+ConjointResult refine_segment(Conjoint& conjoint, EdgeId edge, VertexId a, VertexId b,
+                              const SurfaceRefinement& options);
 
 /// Distance from the centroid of a triangle of t_3d to the point of the surface at the same place of the chart: how far
 /// the facet is from its face.

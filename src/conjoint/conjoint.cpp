@@ -1,6 +1,6 @@
 // Every insertion is judged in all triangulations concerned before any of them is changed: the face meshes by
-// FaceMesh::judge_*, the tetrahedralization by its (const) cavity. Rejected: committing face by face with an undo log; a
-// judged insertion needs none.
+// FaceMesh::judge_*, the tetrahedralization by its (const) cavity. Rejected: committing face by face with an undo log;
+// a judged insertion needs none.
 #include "conjoint/conjoint.h"
 
 #include <algorithm>
@@ -11,13 +11,20 @@ namespace curvetet {
 
 const char* name(ConjointRefusal refusal) {
   switch (refusal) {
-    case ConjointRefusal::none: return "none";
-    case ConjointRefusal::outside_domain: return "outside_domain";
-    case ConjointRefusal::curved_segment: return "curved_segment";
-    case ConjointRefusal::coincident: return "coincident";
-    case ConjointRefusal::locked_cavity: return "locked_cavity";
-    case ConjointRefusal::too_small: return "too_small";
-    case ConjointRefusal::no_segment: return "no_segment";
+    case ConjointRefusal::none:
+      return "none";
+    case ConjointRefusal::outside_domain:
+      return "outside_domain";
+    case ConjointRefusal::curved_segment:
+      return "curved_segment";
+    case ConjointRefusal::coincident:
+      return "coincident";
+    case ConjointRefusal::locked_cavity:
+      return "locked_cavity";
+    case ConjointRefusal::too_small:
+      return "too_small";
+    case ConjointRefusal::no_segment:
+      return "no_segment";
   }
   return "none";
 }
@@ -32,8 +39,7 @@ Conjoint::Conjoint(const Model& model, VertexStore& vertices, BoundaryMesh& boun
     for (std::size_t k = 0; k < refs.size(); ++k)
       uses_[refs[k].edge].push_back({face, static_cast<std::int32_t>(k), refs[k].use->curve.get()});
   }
-  for (std::size_t v = 0; v < model.vertices.size(); ++v)
-    faces_at_vertex_.push_back(model.faces_at(CadVertexId(v)));
+  for (std::size_t v = 0; v < model.vertices.size(); ++v) faces_at_vertex_.push_back(model.faces_at(CadVertexId(v)));
   for (const Segment& s : segments()) segment_edge_[edge_key(s.a, s.b)] = s.edge;
 }
 
@@ -42,7 +48,8 @@ std::vector<Conjoint::Segment> Conjoint::segments() const {
   for (std::size_t e = 0; e < boundary_->curves.size(); ++e) {
     const CurveMesh& curve = boundary_->curves[EdgeId(e)];
     for (std::size_t i = 0; i + 1 < curve.vertices.size(); ++i)
-      if (curve.vertices[i] != curve.vertices[i + 1]) all.push_back({EdgeId(e), curve.vertices[i], curve.vertices[i + 1]});
+      if (curve.vertices[i] != curve.vertices[i + 1])
+        all.push_back({EdgeId(e), curve.vertices[i], curve.vertices[i + 1]});
   }
   return all;
 }
@@ -55,10 +62,14 @@ EdgeId Conjoint::segment_edge(VertexId a, VertexId b) const {
 const std::vector<FaceId>& Conjoint::faces_of(VertexId v) const {
   const Owner owner = vertices_->owner(v);
   switch (owner.kind) {
-    case OwnerKind::vertex: return faces_at_vertex_[CadVertexId(owner.index)];
-    case OwnerKind::edge: return model_->edges[EdgeId(owner.index)].faces;
-    case OwnerKind::face: return self_[FaceId(owner.index)];
-    case OwnerKind::interior: return none_;
+    case OwnerKind::vertex:
+      return faces_at_vertex_[CadVertexId(owner.index)];
+    case OwnerKind::edge:
+      return model_->edges[EdgeId(owner.index)].faces;
+    case OwnerKind::face:
+      return self_[FaceId(owner.index)];
+    case OwnerKind::interior:
+      return none_;
   }
   return none_;
 }
@@ -126,7 +137,8 @@ ConjointResult Conjoint::split_segment(EdgeId edge, VertexId a, VertexId b, Orig
   std::size_t i = 0;
   const std::size_t n = curve.vertices.size();
   const auto joins = [&](std::size_t k) {
-    return (curve.vertices[k] == a && curve.vertices[k + 1] == b) || (curve.vertices[k] == b && curve.vertices[k + 1] == a);
+    return (curve.vertices[k] == a && curve.vertices[k + 1] == b) ||
+           (curve.vertices[k] == b && curve.vertices[k + 1] == a);
   };
   while (i + 1 < n && !joins(i)) ++i;
   if (i + 1 >= n) return {ConjointRefusal::no_segment, {}};

@@ -1,8 +1,8 @@
-// One vertex into all the triangulations it belongs to, or into none (the paper's section 3.1 and 3.4: "insertion of a new
-// vertex both into t_ps and into the tetrahedralization").
+// One vertex into all the triangulations it belongs to, or into none (the paper's section 3.1 and 3.4: "insertion of a
+// new vertex both into t_ps and into the tetrahedralization").
 //
-// Before: every vertex of the surface meshes is in the tetrahedralization (if one is attached). After: the same; a refused
-// insertion has changed nothing but the append-only vertex store.
+// Before: every vertex of the surface meshes is in the tetrahedralization (if one is attached). After: the same; a
+// refused insertion has changed nothing but the append-only vertex store.
 #pragma once
 
 #include <cstdint>
@@ -19,12 +19,12 @@ namespace curvetet {
 
 enum class ConjointRefusal : std::uint8_t {
   none,
-  outside_domain,   ///< the point leaves the face's domain, or lies on its boundary
-  curved_segment,   ///< the region between a chord and its arc would hold a node, or the arc leaves the face
-  coincident,       ///< a vertex is already at this place in space
-  locked_cavity,    ///< the tetrahedralization has no legal cavity (locks, kept segments)
-  too_small,        ///< the segment or triangle is at the floor of spacing
-  no_segment,       ///< the segment is not part of the curve mesh (any more)
+  outside_domain,  ///< the point leaves the face's domain, or lies on its boundary
+  curved_segment,  ///< the region between a chord and its arc would hold a node, or the arc leaves the face
+  coincident,      ///< a vertex is already at this place in space
+  locked_cavity,   ///< the tetrahedralization has no legal cavity (locks, kept segments)
+  too_small,       ///< the segment or triangle is at the floor of spacing
+  no_segment,      ///< the segment is not part of the curve mesh (any more)
 };
 const char* name(ConjointRefusal refusal);
 

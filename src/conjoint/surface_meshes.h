@@ -1,4 +1,5 @@
-// The curve meshes and face meshes of a body, over one VertexStore: what is refined together with the tetrahedralization.
+// The curve meshes and face meshes of a body, over one VertexStore: what is refined together with the
+// tetrahedralization.
 #pragma once
 
 #include <vector>
@@ -9,8 +10,8 @@
 
 namespace curvetet {
 
-/// Ordered points on one CAD edge, by rising parameter; the ends are the CAD vertices'. Empty for a degenerate edge, whose
-/// one vertex is the CAD vertex's.
+/// Ordered points on one CAD edge, by rising parameter; the ends are the CAD vertices'. Empty for a degenerate edge,
+/// whose one vertex is the CAD vertex's.
 struct CurveMesh {
   std::vector<VertexId> vertices;
   std::vector<double> parameters;

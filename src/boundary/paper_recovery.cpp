@@ -1,0 +1,197 @@
+// Faces one by one, in the order of the body; a face is locked when its march is complete and never touched again. A
+// curve whose other face is locked already is not split any more. Where an iteration marks no more than the best one
+// before for several rounds, the face falls back to recovery facet by facet (section 3.5, rule 2).
+#include "boundary/paper_recovery.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "boundary/boundary_mesh.h"
+#include "boundary/edge_recovery.h"
+#include "boundary/reconnect.h"
+
+namespace curvetet {
+
+namespace {
+
+constexpr int kPatience = 12;  // iterations without a better march before the fallback
+
+class PaperRecovery {
+ public:
+  PaperRecovery(Conjoint& conjoint, const FaceRecoveryOptions& options, Context& context)
+      : conjoint_(conjoint),
+        tets_(*conjoint.tets()),
+        options_(options),
+        context_(context),
+        locked_(conjoint.model().faces.size(), false) {
+    out_.recovery.faces.resize(locked_.size());
+  }
+
+  Result<PaperRecoveryResult> run() {
+    const Status edges = drain_edges();
+    if (!edges.ok()) return edges.error();
+    const Status first = paper_stage_one(conjoint_, options_.floor, out_.counts, context_);
+    if (!first.ok()) return first.error();
+    for (std::size_t f = 0; f < locked_.size(); ++f) remember_initial(FaceId(f));
+    for (std::size_t f = 0; f < locked_.size() && out_.recovery.failures.empty(); ++f) {
+      const Status done = recover(FaceId(f));
+      if (!done.ok()) return done.error();
+    }
+    return std::move(out_);
+  }
+
+ private:
+  Status drain_edges() {
+    EdgeRecoveryOptions options;
+    options.floor = options_.floor;
+    options.flips = false;
+    options.split_encroached = true;
+    auto edges = recover_edges(conjoint_, options, context_);
+    if (!edges.ok()) return edges.error();
+    out_.recovery.edge_splits += edges.value().splits;
+    for (RecoveryFailure& f : edges.value().failures) out_.recovery.failures.push_back(std::move(f));
+    return Done{};
+  }
+
+  void remember_initial(FaceId face) {
+    for (const SurfaceTriangle& t : surface_triangles(conjoint_.boundary().faces[face], face))
+      out_.recovery.faces[face].initial.insert(facet_key(t.vertices[0], t.vertices[1], t.vertices[2]));
+  }
+
+  Status recover(FaceId face) {
+    FaceMesh& mesh = conjoint_.boundary().faces[face];
+    const std::size_t first_nodes = mesh.node_count();
+    std::size_t best = 0;
+    int waited = 0;
+    for (;;) {
+      if (context_.should_stop()) return context_.stop_error("second stage of face recovery");
+      const Status edges = drain_edges();
+      if (!edges.ok()) return edges.error();
+      if (!out_.recovery.failures.empty()) return Done{};
+      const MarchResult m = march_face(conjoint_, face);
+      if (m.complete && (m.missing.empty() || mesh.replace(m.triangles))) break;
+      waited = m.seeds > best ? 0 : waited + 1;
+      best = std::max(best, m.seeds);
+      const bool doubled = m.seeds == 0 && mesh.node_count() > 2 * first_nodes + 8;
+      if (doubled || waited > kPatience || !remesh(face, m)) {
+        fall_back(face);
+        return Done{};
+      }
+      ++out_.recovery.rounds;
+    }
+    lock(face);
+    return Done{};
+  }
+
+  // Remeshing cases 1, 3a, 3b and 4 of section 3.4. Case 2 (an edge that t_3d would use four times) shows as a missing
+  // triangle whose facet is taken, and is met by case 3a.
+  bool remesh(FaceId face, const MarchResult& m) {
+    std::size_t inserted = 0;
+    if (m.seeds == 0) {
+      for (std::size_t i = 0; i < m.missing.size() && inserted < 3; ++i)
+        inserted += refine(face, m.missing[i]) ? 1U : 0U;
+      out_.counts.case1 += inserted;
+      return inserted > 0;
+    }
+    for (const StuckEdge& e : m.stuck) inserted += refine_stuck(face, e) ? 1U : 0U;
+    if (inserted == 0)  // case 4: vertices that no marked triangle uses have missing triangles around them
+      for (TriangleId t : m.missing)
+        if (refine(face, t)) {
+          ++out_.counts.case4;
+          ++inserted;
+        }
+    return inserted > 0;
+  }
+
+  bool refine(FaceId face, TriangleId t) {
+    const FaceMesh& mesh = conjoint_.boundary().faces[face];
+    if (!mesh.triangle(t).alive()) return false;
+    SurfaceRefinement refinement;
+    refinement.floor = options_.floor;
+    refinement.origin = Origin::stage_two;
+    refinement.split_curves = none_locked_around(face, t);
+    const bool ok = refine_triangle(conjoint_, face, t, refinement).ok();
+    if (ok) ++out_.recovery.points;
+    return ok;
+  }
+
+  // A curve with a locked face on it must not be split: its facets would go.
+  bool none_locked_around(FaceId face, TriangleId t) const {
+    const FaceMesh& mesh = conjoint_.boundary().faces[face];
+    for (std::int32_t use : mesh.triangle(t).use) {
+      if (use < 0) continue;
+      for (FaceId f :
+           conjoint_.model().edges[conjoint_.boundary().uses[face][static_cast<std::size_t>(use)].edge].faces)
+        if (locked_[f]) return false;
+    }
+    return true;
+  }
+
+  bool refine_stuck(FaceId face, const StuckEdge& e) {
+    const FaceMesh& mesh = conjoint_.boundary().faces[face];
+    if (const auto edge = mesh.find_edge(e.a, e.b)) {
+      const FaceTriangle& t = mesh.triangle(edge->triangle);
+      const bool is_marked = std::find(t.node.begin(), t.node.end(), e.apex) != t.node.end();
+      const TriangleId other = is_marked ? t.neighbour[static_cast<std::size_t>(edge->local)] : edge->triangle;
+      if (!other.valid() || !refine(face, other)) return false;
+      ++out_.counts.case3a;
+      return true;
+    }
+    const Vec2 middle = 0.5 * (mesh.node(e.a).q + mesh.node(e.b).q);
+    const Vec3 p = 0.5 * (conjoint_.vertices().position(mesh.node(e.a).vertex) +
+                          conjoint_.vertices().position(mesh.node(e.b).vertex));
+    const auto uv = conjoint_.model().faces[face].surface->project(p, mesh.chart.to_uv(middle));
+    const auto at = mesh.locate(uv ? mesh.chart.to_chart(*uv) : middle, mesh.triangle_at(e.a));
+    if (!at || !refine(face, *at)) return false;
+    ++out_.counts.case3b;
+    return true;
+  }
+
+  void lock(FaceId face) {
+    FaceCertificate& c = out_.recovery.faces[face];
+    for (const SurfaceTriangle& t : surface_triangles(conjoint_.boundary().faces[face], face)) {
+      const auto f = tets_.find_facet(t.vertices[0], t.vertices[1], t.vertices[2]);
+      CURVETET_CHECK(f.has_value());
+      tets_.lock(*f, face);
+      ++c.triangles;
+      c.coincide += c.initial.count(facet_key(t.vertices[0], t.vertices[1], t.vertices[2]));
+    }
+    c.hash_locked = facet_hash(conjoint_.boundary().faces[face], face);
+    locked_[face] = true;
+  }
+
+  void fall_back(FaceId face) {
+    out_.recovery.faces[face].fallback = true;
+    ++out_.counts.fallback_faces;
+    const ReconnectResult r = reconnect_face(conjoint_, face, 6);
+    if (r.missing.empty()) {
+      lock(face);
+      return;
+    }
+    RecoveryFailure failure;
+    failure.faces = {face};
+    failure.what = fmt::format("{} facets are not recovered, not even one by one", r.missing.size());
+    const SurfaceTriangle& t = r.missing.front();
+    for (VertexId v : t.vertices) failure.where = failure.where + (1.0 / 3) * conjoint_.vertices().position(v);
+    failure.size =
+        0.5 * distance(conjoint_.vertices().position(t.vertices[0]), conjoint_.vertices().position(t.vertices[1]));
+    out_.recovery.failures.push_back(failure);
+  }
+
+  Conjoint& conjoint_;
+  Tetrahedralization& tets_;
+  const FaceRecoveryOptions& options_;
+  Context& context_;
+  IndexedVector<FaceId, char> locked_;
+  PaperRecoveryResult out_;
+};
+
+}  // namespace
+
+Result<PaperRecoveryResult> recover_faces_as_paper(Conjoint& conjoint, const FaceRecoveryOptions& options,
+                                                   Context& context) {
+  return PaperRecovery(conjoint, options, context).run();
+}
+
+}  // namespace curvetet

@@ -1,0 +1,17 @@
+// From the mesher's structures to the plain mesh that users get: vertices compacted, lengths in the output's unit.
+#pragma once
+
+#include "conjoint/conjoint.h"
+#include "curvetet/mesh.h"
+#include "pipeline/settings.h"
+
+namespace curvetet {
+
+/// Tets with a region, the triangles of every T_Γ, the segments of every curve mesh. Order: by id; so the same bytes
+/// each time.
+Mesh assemble(const Conjoint& conjoint, const Settings& settings);
+
+/// FNV-1a over the bits of points, tets and triangles.
+std::uint64_t mesh_hash(const Mesh& mesh);
+
+}  // namespace curvetet

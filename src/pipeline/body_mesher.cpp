@@ -1,0 +1,153 @@
+// Coarse meshes take milliseconds, so a failure is answered by meshing again with a smaller size where it happened,
+// rather than by ever more desperate local measures. Halving at most six times bounds it.
+#include "pipeline/body_mesher.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+namespace curvetet {
+
+namespace {
+
+class BodyMesher {
+ public:
+  BodyMesher(const Model& model, SizeField& sizes, const Settings& settings, RecoveryMode mode, StageClock& clock,
+             Context& context)
+      : model_(model), sizes_(sizes), settings_(settings), mode_(mode), clock_(clock), context_(context) {}
+
+  Result<BodyMesherResult> run() {
+    BodyMesherResult result;
+    for (result.rounds = 0;; ++result.rounds) {
+      result.mesh = std::make_unique<BodyMesh>();
+      auto failures = attempt(*result.mesh);
+      if (!failures.ok()) return failures.error();
+      result.failures = std::move(failures.value());
+      if (result.failures.empty() || result.rounds == kOuterRounds || hopeless(result.failures)) return result;
+      for (const RecoveryFailure& f : result.failures) log(f);
+      sizes_.add(sources(result.failures));
+    }
+  }
+
+ private:
+  using Failures = std::vector<RecoveryFailure>;
+
+  static bool hopeless(const Failures& failures) {
+    return std::all_of(failures.begin(), failures.end(),
+                       [](const RecoveryFailure& f) { return f.proved || f.size <= 0; });
+  }
+
+  void log(const RecoveryFailure& f) const {
+    std::string faces;
+    for (FaceId id : f.faces) faces += fmt::format(" {}", model_.faces[id].label.cad_id);
+    context_.log(LogLevel::info, fmt::format("outer loop: {} (faces{}), size {:.4g} there", f.what, faces,
+                                             model_.frame.length_to_cad(f.size) * settings_.unit_scale));
+  }
+
+  std::vector<SizeSource> sources(const Failures& failures) const {
+    std::vector<SizeSource> more;
+    for (const RecoveryFailure& f : failures) {
+      if (f.size <= 0) continue;
+      SizeSource s;
+      s.where = f.where;
+      s.size = std::max(std::min(f.size, 0.5 * sizes_.at(f.where)), settings_.floor);
+      s.reason = SizeReason::outer_loop;
+      if (!f.faces.empty()) s.face = f.faces.front();
+      if (f.faces.size() > 1) s.other = f.faces[1];
+      more.push_back(s);
+    }
+    return more;
+  }
+
+  Result<Failures> attempt(BodyMesh& body) {
+    clock_.start("curves and faces", 0.1);
+    auto front = mesh_boundary(model_, sizes_, body.vertices, BoundaryOptions{}, context_);
+    if (!front.ok()) return front.error();
+    body.boundary = std::move(front.value().mesh);
+    if (!front.value().failures.empty()) return front_failures(front.value().failures);
+    count_initial(body);
+    body.conjoint = std::make_unique<Conjoint>(model_, body.vertices, body.boundary, [&](FaceId f) {
+      return spatial_criterion(body.boundary.faces[f], body.vertices, model_.faces[f]);
+    });
+
+    if (mode_ == RecoveryMode::conjoint) {
+      clock_.start("crossings", 0.25);
+      auto crossings = cure_crossings(*body.conjoint, {settings_.floor}, context_);
+      if (!crossings.ok()) return crossings.error();
+      body.crossings = crossings.value();
+      if (!body.crossings.failures.empty()) return body.crossings.failures;
+    }
+    return tetrahedralize(body);
+  }
+
+  Status recover(BodyMesh& body) {
+    if (mode_ == RecoveryMode::paper) {
+      auto recovery = recover_faces_as_paper(*body.conjoint, {settings_.floor}, context_);
+      if (!recovery.ok()) return recovery.error();
+      body.recovery = std::move(recovery.value().recovery);
+      body.paper = recovery.value().counts;
+      return Done{};
+    }
+    auto recovery = recover_faces(*body.conjoint, {settings_.floor}, context_);
+    if (!recovery.ok()) return recovery.error();
+    body.recovery = std::move(recovery.value());
+    return Done{};
+  }
+
+  Result<Failures> tetrahedralize(BodyMesh& body) {
+    clock_.start("tetrahedralization", 0.3);
+    body.tets = std::make_unique<Tetrahedralization>(body.vertices, context_.seed);
+    const Status built = body.tets->build(used_vertices(body), context_);
+    if (!built.ok()) return built.error();
+    body.conjoint->attach(body.tets.get());
+
+    clock_.start("recovery", 0.35);
+    const Status recovered = recover(body);
+    if (!recovered.ok()) return recovered.error();
+    if (!body.recovery.failures.empty()) return body.recovery.failures;
+
+    clock_.start("classification", 0.5);
+    body.classified = classify(*body.conjoint);
+    return body.classified.failures;
+  }
+
+  static std::vector<VertexId> used_vertices(const BodyMesh& body) {
+    std::vector<char> used(body.vertices.size(), 0);
+    for (const FaceMesh& mesh : body.boundary.faces)
+      for (std::size_t t = 0; t < mesh.triangle_slots(); ++t)
+        if (mesh.triangle(TriangleId(t)).alive())
+          for (VertexId v : mesh.vertices(TriangleId(t))) used[v.value()] = 1;
+    std::vector<VertexId> list;
+    for (std::size_t v = 0; v < used.size(); ++v)
+      if (used[v]) list.push_back(VertexId(v));
+    return list;
+  }
+
+  static void count_initial(BodyMesh& body) {
+    for (const FaceMesh& mesh : body.boundary.faces) body.initial_points.push_back(mesh.node_count());
+    body.initial_surface_points = used_vertices(body).size();
+  }
+
+  Failures front_failures(const std::vector<FaceFailure>& faces) const {
+    Failures failures;
+    for (const FaceFailure& f : faces)
+      failures.push_back({{f.face}, f.where, 0.5 * sizes_.at(f.where), fmt::format("{}: {}", f.cause, f.detail)});
+    return failures;
+  }
+
+  const Model& model_;
+  SizeField& sizes_;
+  const Settings& settings_;
+  RecoveryMode mode_;
+  StageClock& clock_;
+  Context& context_;
+};
+
+}  // namespace
+
+Result<BodyMesherResult> mesh_body(const Model& model, SizeField& sizes, const Settings& settings,
+                                   const Options& options, StageClock& clock, Context& context) {
+  return BodyMesher(model, sizes, settings, options.recovery, clock, context).run();
+}
+
+}  // namespace curvetet

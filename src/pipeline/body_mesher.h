@@ -1,0 +1,46 @@
+// The boundary stages under the outer loop: mesh curves and faces, cure crossings, tetrahedralize, recover, classify;
+// where that fails, a smaller size at the place of the failure, and again (DESIGN: "the outer loop").
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "boundary/boundary_mesh.h"
+#include "boundary/classify.h"
+#include "boundary/face_recovery.h"
+#include "boundary/paper_recovery.h"
+#include "conjoint/conjoint.h"
+#include "curvetet/options.h"
+#include "curvetet/report.h"
+#include "pipeline/settings.h"
+#include "pipeline/stage_clock.h"
+#include "spatial/tetrahedralization.h"
+
+namespace curvetet {
+
+/// The meshes of a body, which refer to one another and are therefore kept in place.
+struct BodyMesh {
+  VertexStore vertices;
+  BoundaryMesh boundary;
+  std::unique_ptr<Conjoint> conjoint;
+  std::unique_ptr<Tetrahedralization> tets;
+  FaceRecoveryResult recovery;
+  CrossingResult crossings;
+  PaperCounts paper;  ///< of `--recovery paper`
+  ClassifyResult classified;
+  IndexedVector<FaceId, std::size_t> initial_points;  ///< of each face mesh before recovery
+  std::size_t initial_surface_points = 0;
+};
+
+struct BodyMesherResult {
+  std::unique_ptr<BodyMesh> mesh;
+  int rounds = 0;                         ///< of the outer loop that were needed beyond the first
+  std::vector<RecoveryFailure> failures;  ///< empty when complete
+};
+
+inline constexpr int kOuterRounds = 6;
+
+Result<BodyMesherResult> mesh_body(const Model& model, SizeField& sizes, const Settings& settings,
+                                   const Options& options, StageClock& clock, Context& context);
+
+}  // namespace curvetet

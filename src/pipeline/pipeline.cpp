@@ -1,0 +1,151 @@
+// The stages in the order of the paper's Fig. 1 and DESIGN's list. This function reads like that list; what a stage
+// promised is checked before the next one starts.
+#include <fmt/format.h>
+
+#include <chrono>
+#include <fstream>
+
+#include "boundary/classify.h"
+#include "cad/load.h"
+#include "curvetet/curvetet.h"
+#include "pipeline/assemble.h"
+#include "pipeline/body_mesher.h"
+#include "pipeline/report_builder.h"
+#include "pipeline/settings.h"
+#include "quality/validate.h"
+#include "volume/improve.h"
+#include "volume/refine.h"
+
+namespace curvetet {
+
+const char* version() { return "0.1.0"; }
+
+namespace {
+
+std::string file_hash(const std::string& path) {
+  std::ifstream in(path, std::ios::binary);
+  std::uint64_t hash = 0xcbf29ce484222325ULL;
+  char buffer[1 << 16];
+  while (in.read(buffer, sizeof buffer) || in.gcount() > 0)
+    for (std::streamsize i = 0; i < in.gcount(); ++i)
+      hash = (hash ^ static_cast<unsigned char>(buffer[i])) * 0x100000001b3ULL;
+  return fmt::format("{:016x}", hash);
+}
+
+class Run {
+ public:
+  Run(const Input& input, const Options& options, Context& context, Report& report)
+      : input_(input), options_(options), context_(context), report_(report), clock_(context) {}
+
+  Result<Mesh> operator()() {
+    const Status options = check_options(options_);
+    if (!options.ok()) return options.error();
+    if (options_.time_limit)
+      context_.deadline =
+          std::chrono::steady_clock::now() + std::chrono::duration_cast<std::chrono::steady_clock::duration>(
+                                                 std::chrono::duration<double>(*options_.time_limit));
+    if (options_.threads > 0) context_.threads = options_.threads;
+    context_.seed = options_.seed;
+    const Status loaded = load();
+    if (!loaded.ok()) return loaded.error();
+    const Status boundary = mesh_boundary_stages();
+    if (!boundary.ok()) return boundary.error();
+    const Status volume = mesh_volume_stages();
+    if (!volume.ok()) return volume.error();
+    return finish();
+  }
+
+  void keep_times() {
+    clock_.stop();
+    report_.stages = clock_.times();
+  }
+
+ private:
+  Status load() {
+    clock_.start("load", 0);
+    LoadOptions load;
+    load.input_unit = options_.input_unit;
+    load.isolate = options_.isolate_cad;
+    auto model = load_model(input_.path, load, context_);
+    if (!model.ok()) return model.error();
+    model_ = std::move(model.value());
+    report_.input_hash = file_hash(input_.path);
+    auto settings = resolve(options_, model_);
+    if (!settings.ok()) return settings.error();
+    settings_ = std::move(settings.value());
+    report_input(report_, model_, settings_, options_);
+    return Done{};
+  }
+
+  Status mesh_boundary_stages() {
+    clock_.start("size field", 0.05);
+    auto sizes = make_size_field(model_, settings_.sizing, context_);
+    if (!sizes.ok()) return sizes.error();
+    sizes_ = std::move(sizes.value());
+    auto body = mesh_body(model_, sizes_, settings_, options_, clock_, context_);
+    if (!body.ok()) return body.error();
+    body_ = std::move(body.value());
+    report_reductions(report_, model_, settings_, sizes_);
+    report_.rounds = body_.rounds;
+    if (body_.failures.empty()) return Done{};
+    for (const RecoveryFailure& f : body_.failures) report_.errors.push_back(to_error(f, model_, settings_));
+    return report_.errors.front();
+  }
+
+  Status mesh_volume_stages() {
+    BodyMesh& body = *body_.mesh;
+    if (options_.refine_interior) {
+      clock_.start("interior points", 0.55);
+      RefineOptions refine;
+      refine.radius_edge = options_.radius_edge;
+      auto refined = refine_interior(*body.tets, body.vertices, sizes_, refine, context_);
+      if (!refined.ok()) return refined.error();
+      report_.unmet_tets = refined.value().unmet;
+    }
+    if (options_.improve) {
+      clock_.start("improvement", 0.75);
+      auto improved = improve(*body.tets, body.vertices, ImproveOptions{}, context_);
+      if (!improved.ok()) return improved.error();
+    }
+    return Done{};
+  }
+
+  Result<Mesh> finish() {
+    clock_.start("validation", 0.92);
+    BodyMesh& body = *body_.mesh;
+    report_body(report_, model_, settings_, body_, locked_hashes(*body.tets, model_.faces.size()));
+    Mesh mesh = assemble(*body.conjoint, settings_);
+    const ValidationReport validation = validate(mesh, &model_, settings_.unit_scale, context_);
+    report_mesh(report_, mesh, validation);
+    context_.progress("done", 1);
+    return mesh;
+  }
+
+  const Input& input_;
+  const Options& options_;
+  Context& context_;
+  Report& report_;
+  StageClock clock_;
+  Model model_;
+  Settings settings_;
+  SizeField sizes_;
+  BodyMesherResult body_;
+};
+
+}  // namespace
+
+Result<MeshOutput> mesh(const Input& input, const Options& options, Context& context, Report* report_on_failure) {
+  Report report;
+  report.version = version();
+  report.input = input.path;
+  Run run(input, options, context, report);
+  Result<Mesh> made = run();
+  run.keep_times();
+  if (made.ok()) return MeshOutput{std::move(made.value()), std::move(report)};
+  if (report.errors.empty()) report.errors.push_back(made.error());
+  const Error error = made.error();
+  if (report_on_failure != nullptr) *report_on_failure = std::move(report);
+  return error;
+}
+
+}  // namespace curvetet

@@ -1,0 +1,167 @@
+#include "pipeline/report_builder.h"
+
+#include <fmt/format.h>
+
+#include "pipeline/assemble.h"
+
+namespace curvetet {
+
+namespace {
+
+const char* reason_name(SizeReason reason) {
+  switch (reason) {
+    case SizeReason::asked:
+      return "asked";
+    case SizeReason::curvature:
+      return "curvature";
+    case SizeReason::chord_height:
+      return "chord_height";
+    case SizeReason::gap:
+      return "gap";
+    case SizeReason::edge_length:
+      return "edge_length";
+    case SizeReason::callback:
+      return "callback";
+    case SizeReason::outer_loop:
+      return "outer_loop";
+  }
+  return "asked";
+}
+
+Vec3 out_point(Vec3 working, const Model& model, const Settings& settings) {
+  return settings.unit_scale * model.frame.to_cad(working);
+}
+
+std::size_t count_origin(const BodyMesh& body, FaceId face, Origin origin) {
+  std::size_t count = 0;
+  const FaceMesh& mesh = body.boundary.faces[face];
+  for (std::size_t n = 0; n < mesh.node_count(); ++n)
+    if (mesh.triangle_at(NodeId(n)).valid() && body.vertices.origin(mesh.node(NodeId(n)).vertex) == origin) ++count;
+  return count;
+}
+
+FaceReport face_report(const Model& model, const BodyMesh& body, FaceId face, std::uint64_t hash_final) {
+  FaceReport r;
+  r.cad_id = model.faces[face].label.cad_id;
+  r.name = model.face_name(face);
+  r.kind = name(model.faces[face].surface->kind());
+  r.initial_points = body.initial_points[face];
+  r.points_edge_recovery = count_origin(body, face, Origin::edge_recovery);
+  r.points_stage_one = count_origin(body, face, Origin::stage_one);
+  r.points_stage_two = count_origin(body, face, Origin::stage_two);
+  const FaceCertificate& c = body.recovery.faces[face];
+  r.triangles_parametric = c.initial.size();
+  r.triangles = c.triangles;
+  r.coincide = c.coincide;
+  r.hash_locked = c.hash_locked;
+  r.hash_final = hash_final;
+  r.relocks = c.relocks;
+  r.unlocks = c.unlocks;
+  r.flips_without_points = c.reconnected;
+  r.steiner = c.steiner;
+  r.fallback = c.fallback;
+  return r;
+}
+
+}  // namespace
+
+void report_input(Report& report, const Model& model, const Settings& settings, const Options& options) {
+  report.unit = settings.unit;
+  report.mode = options.recovery == RecoveryMode::paper ? "paper" : "conjoint";
+  report.options_json = options_json(options, settings, model);
+  for (const HealingNote& note : model.healing) report.healing.push_back(note.entity + ": " + note.what);
+}
+
+void report_body(Report& report, const Model& model, const Settings& settings, const BodyMesherResult& body,
+                 const IndexedVector<FaceId, std::uint64_t>& hash_final) {
+  const BodyMesh& mesh = *body.mesh;
+  report.rounds = body.rounds;
+  report.initial_surface_points = mesh.initial_surface_points;
+  RecoveryCounts& c = report.recovery;
+  c.crossings = mesh.crossings.first_pairs;
+  c.edge_flips = mesh.recovery.edge_flips;
+  c.edge_splits = mesh.recovery.edge_splits;
+  c.rounds = mesh.recovery.rounds;
+  c.stage_one_points = mesh.crossings.points + mesh.paper.stage_one_points;
+  c.stage_one_allowed = mesh.paper.stage_one_allowed;
+  c.stage_two_points = mesh.recovery.points;
+  c.case1 = mesh.paper.case1;
+  c.case3a = mesh.paper.case3a;
+  c.case3b = mesh.paper.case3b;
+  c.case4 = mesh.paper.case4;
+  c.fallback_faces = mesh.paper.fallback_faces;
+  for (std::size_t f = 0; f < model.faces.size(); ++f)
+    report.faces.push_back(face_report(model, mesh, FaceId(f), hash_final[FaceId(f)]));
+  const double scale = settings.unit_scale / model.frame.scale;
+  for (std::size_t s = 0; s < model.solids.size(); ++s) {
+    SolidReport r;
+    r.cad_id = model.solids[SolidId(s)].label.cad_id;
+    r.name = model.solid_name(SolidId(s));
+    r.volume = mesh.classified.volumes[SolidId(s)] * scale * scale * scale;
+    r.cad_volume = model.solids[SolidId(s)].volume * scale * scale * scale;
+    report.solids.push_back(r);
+  }
+}
+
+void report_reductions(Report& report, const Model& model, const Settings& settings, const SizeField& sizes) {
+  for (const SizeReduction& r : sizes.reductions(model)) {
+    ReductionReport out;
+    out.face = r.face.valid() ? model.faces[r.face].label.cad_id : 0;
+    out.other = r.other.valid() ? model.faces[r.other].label.cad_id : 0;
+    out.reason = reason_name(r.reason);
+    out.size = model.frame.length_to_cad(r.size) * settings.unit_scale;
+    out.gap = model.frame.length_to_cad(r.gap) * settings.unit_scale;
+    const Vec3 p = out_point(r.where, model, settings);
+    out.where = {p.x, p.y, p.z};
+    report.reductions.push_back(out);
+  }
+}
+
+void report_mesh(Report& report, const Mesh& mesh, const ValidationReport& validation) {
+  report.points = mesh.points.size();
+  report.tets = mesh.tets.size();
+  report.triangles = mesh.triangles.size();
+  report.segments = mesh.segments.size();
+  for (SolidReport& s : report.solids) s.tets = 0;
+  for (std::uint32_t solid : mesh.tet_solid) ++report.solids[solid].tets;
+  report.mesh_hash = mesh_hash(mesh);
+  report.worst_dihedral = validation.quality.worst_dihedral;
+  report.worst_place = validation.quality.worst_place;
+  report.tets_below_half_degree = validation.quality.below_half_degree;
+  report.tets_below_five_degrees = validation.quality.below_five_degrees;
+  report.mean_radius_ratio = validation.quality.radius_ratio.mean;
+  report.radius_ratio_histogram = validation.quality.radius_ratio.bins;
+  report.dihedral_histogram = validation.quality.dihedral.bins;
+  report.valid = validation.valid();
+  for (const Finding& f : validation.findings) {
+    const std::string text =
+        fmt::format("{}: {}{}{}", f.check, f.count,
+                    f.examples.empty() ? "" : ", first: ", f.examples.empty() ? "" : f.examples.front());
+    if (f.severity == Severity::warning)
+      report.warnings.push_back(text);
+    else
+      report.errors.push_back({ErrorCode::invalid_mesh, text});
+  }
+}
+
+Error to_error(const RecoveryFailure& failure, const Model& model, const Settings& settings) {
+  Error error;
+  error.code = failure.proved ? ErrorCode::self_intersection : ErrorCode::recovery_failed;
+  std::string faces;
+  for (FaceId f : failure.faces) {
+    error.entities.push_back(fmt::format("face {}", model.faces[f].label.cad_id));
+    faces += fmt::format("{}{}", faces.empty() ? "" : ", ", model.face_name(f));
+  }
+  const Vec3 p = out_point(failure.where, model, settings);
+  error.where = p;
+  error.message =
+      fmt::format("{} ({}) at ({:.6g}, {:.6g}, {:.6g}) {}", failure.what, faces, p.x, p.y, p.z, settings.unit);
+  const double size = model.frame.length_to_cad(failure.size) * settings.unit_scale;
+  if (failure.proved)
+    error.hint = "mend the body: these faces must not cross";
+  else if (size > 0)
+    error.hint = fmt::format("a size of {:.3g} {} on these faces may do (--face-size)", size, settings.unit);
+  return error;
+}
+
+}  // namespace curvetet

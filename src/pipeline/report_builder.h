@@ -1,0 +1,20 @@
+// Fills the report from what the stages returned.
+#pragma once
+
+#include "curvetet/report.h"
+#include "pipeline/body_mesher.h"
+#include "quality/validate.h"
+
+namespace curvetet {
+
+/// Healing notes, unit, options: everything known once the body is loaded.
+void report_input(Report& report, const Model& model, const Settings& settings, const Options& options);
+/// Certificates, solids, rounds. `hash_final`: of the locked facets of the finished mesh, by face.
+void report_body(Report& report, const Model& model, const Settings& settings, const BodyMesherResult& body,
+                 const IndexedVector<FaceId, std::uint64_t>& hash_final);
+void report_reductions(Report& report, const Model& model, const Settings& settings, const SizeField& sizes);
+void report_mesh(Report& report, const Mesh& mesh, const ValidationReport& validation);
+/// A failure of recovery as an error in the user's terms.
+Error to_error(const RecoveryFailure& failure, const Model& model, const Settings& settings);
+
+}  // namespace curvetet

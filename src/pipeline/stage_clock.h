@@ -1,0 +1,46 @@
+// Times of the stages, for the report; and progress, from a table of weights.
+#pragma once
+
+#include <chrono>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "base/context.h"
+#include "curvetet/report.h"
+
+namespace curvetet {
+
+class StageClock {
+ public:
+  explicit StageClock(Context& context) : context_(&context) {}
+
+  /// Ends the running stage and starts the next; `progress` is the share of the whole run done when it starts.
+  void start(std::string_view stage, double progress) {
+    stop();
+    stage_ = stage;
+    begin_ = std::chrono::steady_clock::now();
+    context_->progress(stage, progress);
+  }
+  void stop() {
+    if (stage_.empty()) return;
+    const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin_).count();
+    for (StageTime& t : times_)
+      if (t.stage == stage_) {
+        t.seconds += seconds;
+        stage_.clear();
+        return;
+      }
+    times_.push_back({stage_, seconds, 0});
+    stage_.clear();
+  }
+  const std::vector<StageTime>& times() const { return times_; }
+
+ private:
+  Context* context_;
+  std::string stage_;
+  std::chrono::steady_clock::time_point begin_;
+  std::vector<StageTime> times_;
+};
+
+}  // namespace curvetet
