@@ -1,0 +1,137 @@
+// Writes the bodies of the thin-wall, kind and seam checks as BREP files: bodies on which other meshers stop, and one
+// or more of each kind of surface. Usage: make_bodies FOLDER
+#include <BRepAlgoAPI_Common.hxx>
+#include <BRepAlgoAPI_Cut.hxx>
+#include <BRepBuilderAPI_GTransform.hxx>
+#include <BRepBuilderAPI_MakeEdge.hxx>
+#include <BRepBuilderAPI_MakeFace.hxx>
+#include <BRepBuilderAPI_MakeWire.hxx>
+#include <BRepBuilderAPI_NurbsConvert.hxx>
+#include <BRepFilletAPI_MakeFillet.hxx>
+#include <BRepOffsetAPI_MakeThickSolid.hxx>
+#include <BRepOffsetAPI_ThruSections.hxx>
+#include <BRepOffset_MakeOffset.hxx>
+#include <BRepPrimAPI_MakeBox.hxx>
+#include <BRepPrimAPI_MakeCone.hxx>
+#include <BRepPrimAPI_MakeCylinder.hxx>
+#include <BRepPrimAPI_MakePrism.hxx>
+#include <BRepPrimAPI_MakeRevol.hxx>
+#include <BRepPrimAPI_MakeSphere.hxx>
+#include <BRepPrimAPI_MakeTorus.hxx>
+#include <BRepTools.hxx>
+#include <GeomAPI_PointsToBSpline.hxx>
+#include <Geom_BSplineCurve.hxx>
+#include <TColgp_Array1OfPnt.hxx>
+#include <TopExp_Explorer.hxx>
+#include <TopTools_ListOfShape.hxx>
+#include <TopoDS.hxx>
+#include <cmath>
+#include <cstdio>
+#include <filesystem>
+#include <gp_Ax2.hxx>
+#include <gp_Circ.hxx>
+#include <numbers>
+#include <string>
+
+namespace {
+
+std::filesystem::path folder;
+
+void save(const std::string& name, const TopoDS_Shape& shape) {
+  BRepTools::Write(shape, (folder / (name + ".brep")).c_str());
+  std::printf("%s\n", name.c_str());
+}
+
+TopoDS_Shape cut(const TopoDS_Shape& a, const TopoDS_Shape& b) { return BRepAlgoAPI_Cut(a, b).Shape(); }
+gp_Ax2 axis(gp_Pnt p, gp_Dir d = gp_Dir(0, 0, 1)) { return gp_Ax2(p, d); }
+
+void thin_walls() {
+  for (const char* wall : {"1", "0.5", "0.2"}) {
+    const double t = std::stod(wall);
+    save(std::string("shell_") + wall, cut(BRepPrimAPI_MakeSphere(10).Shape(), BRepPrimAPI_MakeSphere(10 - t).Shape()));
+    save(std::string("tube_") + wall,
+         cut(BRepPrimAPI_MakeCylinder(10, 30).Shape(), BRepPrimAPI_MakeCylinder(10 - t, 30).Shape()));
+  }
+  save("lens", BRepAlgoAPI_Common(BRepPrimAPI_MakeSphere(gp_Pnt(0, 0, -9.5), 10).Shape(),
+                                  BRepPrimAPI_MakeSphere(gp_Pnt(0, 0, 9.5), 10).Shape())
+                   .Shape());
+  const double half_turn = std::numbers::pi / 2;
+  save("bent_pipe",
+       cut(BRepPrimAPI_MakeTorus(10, 3, half_turn).Shape(), BRepPrimAPI_MakeTorus(10, 2.7, half_turn).Shape()));
+  save("ball_in_box", cut(BRepPrimAPI_MakeBox(gp_Pnt(-5.01, -5.01, -5.01), 10.02, 10.02, 10.02).Shape(),
+                          BRepPrimAPI_MakeSphere(5).Shape()));
+  save("two_bores", cut(cut(BRepPrimAPI_MakeBox(gp_Pnt(-8, -5, 0), 16, 10, 10).Shape(),
+                            BRepPrimAPI_MakeCylinder(axis(gp_Pnt(-3.01, 0, -1)), 3, 12).Shape()),
+                        BRepPrimAPI_MakeCylinder(axis(gp_Pnt(3.01, 0, -1)), 3, 12).Shape()));
+  save("eccentric", cut(BRepPrimAPI_MakeCylinder(10, 20).Shape(),
+                        BRepPrimAPI_MakeCylinder(axis(gp_Pnt(0.99, 0, -1)), 8.99, 22).Shape()));
+  save("cone_shell",
+       cut(BRepPrimAPI_MakeCone(6, 0, 12).Shape(), BRepPrimAPI_MakeCone(axis(gp_Pnt(0, 0, -0.5)), 6, 0, 12).Shape()));
+}
+
+Handle(Geom_BSplineCurve) spline(std::initializer_list<gp_Pnt> points) {
+  TColgp_Array1OfPnt array(1, static_cast<int>(points.size()));
+  int i = 1;
+  for (const gp_Pnt& p : points) array(i++) = p;
+  return GeomAPI_PointsToBSpline(array).Curve();
+}
+
+void kinds() {
+  save("kind_plane", BRepPrimAPI_MakeBox(3, 4, 5).Shape());
+  save("kind_cylinder", BRepPrimAPI_MakeCylinder(2, 6).Shape());
+  save("kind_cone_apex", BRepPrimAPI_MakeCone(3, 0, 5).Shape());
+  save("kind_cone", BRepPrimAPI_MakeCone(3, 1, 5).Shape());
+  save("kind_sphere", BRepPrimAPI_MakeSphere(4).Shape());
+  save("kind_torus", BRepPrimAPI_MakeTorus(6, 2).Shape());
+  save("kind_horn_torus_sector", BRepPrimAPI_MakeTorus(6, 2, 2.0).Shape());
+  save("kind_bspline", BRepBuilderAPI_NurbsConvert(BRepPrimAPI_MakeTorus(6, 2).Shape()).Shape());
+  save("kind_bspline_ball", BRepBuilderAPI_NurbsConvert(BRepPrimAPI_MakeSphere(4).Shape()).Shape());
+  const auto profile = spline({{2, 0, 0}, {3, 0, 2}, {1.5, 0, 4}, {2.5, 0, 6}});
+  BRepBuilderAPI_MakeWire wire(BRepBuilderAPI_MakeEdge(profile).Edge(),
+                               BRepBuilderAPI_MakeEdge(gp_Pnt(2.5, 0, 6), gp_Pnt(0, 0, 6)).Edge(),
+                               BRepBuilderAPI_MakeEdge(gp_Pnt(0, 0, 6), gp_Pnt(0, 0, 0)).Edge(),
+                               BRepBuilderAPI_MakeEdge(gp_Pnt(0, 0, 0), gp_Pnt(2, 0, 0)).Edge());
+  const TopoDS_Face section = BRepBuilderAPI_MakeFace(wire.Wire()).Face();
+  save("kind_revolution", BRepPrimAPI_MakeRevol(section, gp_Ax1(gp_Pnt(0, 0, 0), gp_Dir(0, 0, 1))).Shape());
+  save("kind_extrusion", BRepPrimAPI_MakePrism(section, gp_Vec(0, 5, 1)).Shape());
+  BRepOffsetAPI_ThruSections loft(true, false);
+  for (double z : {0.0, 3.0, 6.0}) {
+    const double r = z == 3.0 ? 1.5 : 3.0;
+    loft.AddWire(
+        BRepBuilderAPI_MakeWire(BRepBuilderAPI_MakeEdge(gp_Circ(axis(gp_Pnt(0.3 * z, 0, z)), r)).Edge()).Wire());
+  }
+  save("kind_loft", loft.Shape());
+  BRepOffset_MakeOffset offset(BRepPrimAPI_MakePrism(section, gp_Vec(0, 5, 0)).Shape(), 0.3, 1e-4, BRepOffset_Skin,
+                               false, false, GeomAbs_Intersection);
+  if (offset.IsDone()) save("kind_offset", offset.Shape());
+  const TopoDS_Shape block = BRepPrimAPI_MakeBox(6, 6, 4).Shape();
+  BRepFilletAPI_MakeFillet fillet(block);
+  for (TopExp_Explorer e(block, TopAbs_EDGE); e.More(); e.Next()) fillet.Add(0.8, TopoDS::Edge(e.Current()));
+  save("kind_fillet", fillet.Shape());
+}
+
+void seams() {
+  save("seam_cylinder_hole", cut(BRepPrimAPI_MakeCylinder(3, 10).Shape(),
+                                 BRepPrimAPI_MakeCylinder(axis(gp_Pnt(0, 0, 5), gp_Dir(1, 0, 0)), 1, 10).Shape()));
+  save("seam_sphere_hole", cut(BRepPrimAPI_MakeSphere(4).Shape(),
+                               BRepPrimAPI_MakeCylinder(axis(gp_Pnt(0, 0, 0), gp_Dir(1, 0, 0)), 1, 10).Shape()));
+  save("seam_torus_hole", cut(BRepPrimAPI_MakeTorus(6, 2).Shape(),
+                              BRepPrimAPI_MakeCylinder(axis(gp_Pnt(6, 0, 0), gp_Dir(1, 0, 0)), 0.7, 10).Shape()));
+  save("pole_hole",
+       cut(BRepPrimAPI_MakeSphere(4).Shape(), BRepPrimAPI_MakeCylinder(axis(gp_Pnt(0, 0, 0)), 1, 10).Shape()));
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  if (argc != 2) {
+    std::fprintf(stderr, "usage: make_bodies FOLDER\n");
+    return 2;
+  }
+  folder = argv[1];
+  std::filesystem::create_directories(folder);
+  thin_walls();
+  kinds();
+  seams();
+  return 0;
+}

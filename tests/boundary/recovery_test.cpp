@@ -1,0 +1,105 @@
+// The boundary stages from face meshes to classified tets, on analytic bodies at several sizes, in both modes.
+#include <gtest/gtest.h>
+
+#include <functional>
+#include <numbers>
+
+#include "support/bodies.h"
+#include "support/run_boundary.h"
+
+namespace curvetet::test {
+namespace {
+
+struct Case {
+  const char* name;
+  std::function<Model()> make;
+  double size;
+  double curvature;
+};
+
+std::vector<Case> cases() {
+  return {
+      {"box_coarse", [] { return make_box(2, 3, 4); }, 5, 12},
+      {"box_fine", [] { return make_box(2, 3, 4); }, 0.7, 12},
+      {"boxes",
+       [] {
+         return make_boxes({1, 2, 1}, 1, 1);
+       },
+       0.6, 12},
+      {"ball_coarse", [] { return make_ball(3); }, 6, 0},
+      {"ball", [] { return make_ball(3); }, 1, 12},
+      {"shell", [] { return make_shell(10, 9); }, 5, 0},
+      {"thin_shell", [] { return make_shell(10, 9.8); }, 8, 0},
+      {"cylinder_coarse", [] { return make_cylinder(1, 5); }, 10, 0},
+      {"cylinder", [] { return make_cylinder(2, 5); }, 0.8, 12},
+      {"cone", [] { return make_cone(2, 0, 4); }, 1, 12},
+      {"frustum", [] { return make_cone(2, 1, 4); }, 1, 12},
+      {"torus", [] { return make_torus(5, 1); }, 1, 12},
+      {"torus_coarse", [] { return make_torus(5, 2); }, 8, 0},
+      {"tube", [] { return make_tube(10, 9.5, 30); }, 5, 0},
+      {"thin_tube", [] { return make_tube(10, 9.8, 30); }, 8, 0},
+      {"lens", [] { return make_lens(5, 0.5); }, 6, 0},
+      {"nested_balls", [] { return make_nested_balls(3, 2); }, 1, 12},
+  };
+}
+
+class Recovery : public testing::TestWithParam<Case> {};
+
+void expect_recovered(const Model& model, const BoundaryRun& run) {
+  for (const RecoveryFailure& f : run.recovery.failures) ADD_FAILURE() << f.what;
+  for (const RecoveryFailure& f : run.classified.failures) ADD_FAILURE() << f.what;
+  if (testing::Test::HasFailure()) return;
+  for (const std::string& broken : check_recovered(model, run)) ADD_FAILURE() << broken;
+  const auto hashes = locked_hashes(*run.tets, model.faces.size());
+  for (std::size_t f = 0; f < model.faces.size(); ++f)
+    EXPECT_EQ(hashes[FaceId(f)], run.recovery.faces[FaceId(f)].hash_locked) << "face " << f;
+}
+
+TEST_P(Recovery, DefaultModeLocksEveryFaceAndTellsTheSolidsApart) {
+  const Model model = GetParam().make();
+  const auto run = run_boundary(model, {GetParam().size, GetParam().curvature});
+  ASSERT_FALSE(HasFailure());
+  EXPECT_TRUE(run->crossings.failures.empty());
+  expect_recovered(model, *run);
+}
+
+TEST_P(Recovery, PaperModeLocksEveryFaceAndTellsTheSolidsApart) {
+  const Model model = GetParam().make();
+  BoundaryRunOptions options{GetParam().size, GetParam().curvature};
+  options.as_paper = true;
+  const auto run = run_boundary(model, options);
+  ASSERT_FALSE(HasFailure());
+  expect_recovered(model, *run);
+}
+
+INSTANTIATE_TEST_SUITE_P(Bodies, Recovery, testing::ValuesIn(cases()),
+                         [](const auto& info) { return std::string(info.param.name); });
+
+TEST(Crossings, CoarseThinShellWithoutGapSizesIsCured) {
+  const Model model = make_shell(10, 9.8);
+  BoundaryRunOptions options{8, 0};
+  options.gaps = false;
+  options.until = Until::crossings;
+  const auto run = run_boundary(model, options);
+  ASSERT_FALSE(HasFailure());
+  EXPECT_GT(run->crossings.first_pairs, 0u);
+  EXPECT_TRUE(run->crossings.failures.empty());
+  EXPECT_TRUE(crossing_pairs(run->vertices, surface_triangles(run->boundary)).empty());
+}
+
+TEST(Classification, VolumesApproachTheCadAsTheSizeFalls) {
+  const Model model = make_ball(3);
+  const double exact = model.solids[SolidId(0)].volume;
+  double previous = exact;
+  for (double size : {2.0, 1.0, 0.5}) {
+    const auto run = run_boundary(model, {size, 0});
+    ASSERT_FALSE(HasFailure());
+    const double error = std::abs(run->classified.volumes[SolidId(0)] - exact);
+    EXPECT_LT(error, previous);
+    previous = error;
+  }
+  EXPECT_LT(previous, 0.03 * exact);
+}
+
+}  // namespace
+}  // namespace curvetet::test
