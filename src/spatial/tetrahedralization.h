@@ -4,6 +4,7 @@
 // Before: every vertex lies on the grid (geometry/frame.h); no two at one place.
 // After each commit: neighbour links are reciprocal, every finite tet is positive (exactly), ghosts cover the hull, and
 // without locks and kept segments the tetrahedralization is Delaunay of the symbolically perturbed points.
+// Queries and find_cavity use scratch arrays of the object: not to be called on one object from several threads.
 #pragma once
 
 #include <array>
@@ -18,6 +19,7 @@
 #include "base/error.h"
 #include "mesh/tet_complex.h"
 #include "mesh/vertex_store.h"
+#include "spatial/kernel.h"
 
 namespace curvetet {
 
@@ -30,13 +32,13 @@ struct TetEdge {
 /// Why a vertex cannot be inserted.
 enum class Refusal : std::uint8_t {
   none,
-  duplicate,         ///< a vertex is already at this place
-  on_locked_facet,   ///< the point lies on a locked facet
-  on_kept_segment,   ///< the point lies on a kept segment
-  locked_cavity,     ///< no star-shaped cavity is left after shrinking
-  outside,           ///< outside the hull while the caller forbade it
-  too_close,         ///< closer than asked to an existing vertex
-  encroaches,        ///< the cavity would touch what the caller protects
+  duplicate,        ///< a vertex is already at this place
+  on_locked_facet,  ///< the point lies on a locked facet
+  on_kept_segment,  ///< the point lies on a kept segment
+  locked_cavity,    ///< no star-shaped cavity is left after shrinking
+  outside,          ///< outside the hull while the caller forbade it
+  too_close,        ///< closer than asked to an existing vertex
+  encroaches,       ///< the cavity would touch what the caller protects
 };
 const char* name(Refusal refusal);
 
@@ -54,12 +56,13 @@ class Tetrahedralization {
   /// The store must outlive this object; vertices are inserted by id.
   Tetrahedralization(const VertexStore& vertices, std::uint64_t seed);
 
-  /// Delaunay tetrahedralization of all given vertices, in BRIO rounds along a Hilbert curve; replaces what is there. An error
-  /// if fewer than four, or all coplanar, or two at one place (names both).
+  /// Delaunay tetrahedralization of all given vertices, in BRIO rounds along a Hilbert curve; replaces what is there.
+  /// An error if fewer than four, or all coplanar, or two at one place (names both).
   Status build(std::span<const VertexId> vertices, const Context& context);
 
   // --- insertion: find, judge, commit ---
-  /// The tet (finite, or a ghost if outside the hull) that contains p, by a walk from the hint (or from the last place).
+  /// The tet (finite, or a ghost if outside the hull) that contains p, by a walk from the hint (or from the last
+  /// place).
   TetId locate(Vec3 p, TetId hint = TetId()) const;
   /// The cavity of the vertex, which is in the store but not yet in this tetrahedralization; changes nothing. Not grown
   /// across locked facets, shrunk until star-shaped (exactly) with every kept segment on its boundary or outside.
@@ -83,7 +86,8 @@ class Tetrahedralization {
   std::optional<TetEdge> find_edge(VertexId a, VertexId b) const;
   /// The facet with these vertices, seen from one of its tets, if it exists.
   std::optional<TetFacet> find_facet(VertexId a, VertexId b, VertexId c) const;
-  /// The tets around an edge in order, starting at edge.tet, turning from local facet to facet; ghosts included.
+  /// The tets around an edge in order, ghosts included, starting at edge.tet and leaving it through the facet opposite
+  /// k, where (i,j,k,l) is an even permutation of its local vertices: right-handed around the edge from i to j.
   void ring(TetEdge edge, std::vector<TetId>& out) const;
 
   // --- constraints ---
@@ -97,13 +101,20 @@ class Tetrahedralization {
   void touch(TetId t);
 
  private:
+  friend class CavitySearch;
+  kernel::Sites sites() const { return {vertices_->positions(), nullptr}; }
+  void cover_vertices();  ///< grows the tables by vertex to the store's size
+
   const VertexStore* vertices_;
+  std::uint64_t seed_;
   TetComplex complex_;
   IndexedVector<VertexId, TetId> vertex_tet_;
-  std::unordered_set<std::uint64_t> kept_;
+  std::unordered_set<std::uint64_t> kept_;              // looked up, never iterated
+  IndexedVector<VertexId, std::uint32_t> kept_degree_;  // how many kept segments end there
   std::vector<TetId> star_;
-  mutable TetId last_;
-  mutable std::uint64_t random_;
+  mutable TetId last_;                  // where the last location ended
+  mutable kernel::Marks marks_;         // by tet
+  mutable kernel::Marks vertex_marks_;  // by vertex
 };
 
 }  // namespace curvetet

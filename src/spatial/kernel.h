@@ -1,0 +1,102 @@
+// The inner operations that building and single insertion share: conflict, walk, star. Internal to spatial.
+#pragma once
+
+#include <algorithm>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "mesh/tet_complex.h"
+#include "predicates/filters.h"
+#include "predicates/predicates.h"
+
+namespace curvetet::kernel {
+
+/// Coordinates by the complex's vertex ids, and the ids by which ties are broken (none: the vertex ids themselves).
+struct Sites {
+  const Vec3* positions = nullptr;
+  const VertexId* tie_ids = nullptr;
+  const Vec3& position(VertexId v) const { return positions[v.value()]; }
+  VertexId tie_id(VertexId v) const { return tie_ids ? tie_ids[v.value()] : v; }
+};
+
+/// A stream of random bits, reproducible from its seed.
+class Stream {
+ public:
+  explicit Stream(std::uint64_t seed) : state_(seed * 0x9E3779B97F4A7C15ULL | 1U) {}
+  std::uint32_t next() {
+    state_ ^= state_ << 13;
+    state_ ^= state_ >> 7;
+    state_ ^= state_ << 17;
+    return static_cast<std::uint32_t>(state_ >> 32);
+  }
+
+ private:
+  std::uint64_t state_;
+};
+
+/// Marks of slots that are cleared all at once: a mark counts only with the current epoch in it.
+class Marks {
+ public:
+  static constexpr std::uint32_t kOutside = 1;  ///< seen, not in the cavity
+  static constexpr std::uint32_t kInside = 2;   ///< this and larger: in the cavity
+  static constexpr std::uint32_t kBase = 3;     ///< in the cavity, and must stay there
+
+  /// Clears all marks and covers so many slots.
+  void start(std::size_t slots) {
+    cover(slots);
+    if (epoch_ > 0xFFFFFFF0U) {
+      std::fill(stamps_.begin(), stamps_.end(), 0U);
+      epoch_ = 0;
+    }
+    epoch_ += 4;
+  }
+  /// More slots, unmarked.
+  void cover(std::size_t slots) {
+    if (stamps_.size() < slots) stamps_.resize(slots + slots / 2, 0);
+  }
+  /// 0 when unmarked, otherwise the state (1, 2 or 3) given to set().
+  std::uint32_t get(std::uint32_t slot) const {
+    const std::uint32_t difference = stamps_[slot] - epoch_;
+    return difference < 4 ? difference : 0;
+  }
+  void set(std::uint32_t slot, std::uint32_t state) { stamps_[slot] = epoch_ + state; }
+  std::size_t bytes() const { return stamps_.capacity() * sizeof(std::uint32_t); }
+
+ private:
+  std::vector<std::uint32_t> stamps_;
+  std::uint32_t epoch_ = 0;
+};
+
+/// Sign of orient3d of the tet with local vertex i replaced by p; for a ghost, i must be its infinite vertex.
+inline int side(const TetComplex& complex, const Sites& sites, TetId t, int i, const Vec3& p) {
+  const TetComplex::Vertices& v = complex.vertices(t);
+  const std::array<int, 3>& f = kFacet[static_cast<std::size_t>(i)];
+  const Vec3& a = sites.position(v[static_cast<std::size_t>(f[0])]);
+  const Vec3& b = sites.position(v[static_cast<std::size_t>(f[1])]);
+  const Vec3& c = sites.position(v[static_cast<std::size_t>(f[2])]);
+  const int filtered = filters::orient3d(a, b, c, p);
+  return filtered != filters::kUnknown ? filtered : orient3d(a, b, c, p);
+}
+
+/// Local index of the infinite vertex, or -1.
+inline int infinite_local(const TetComplex& complex, TetId t) { return complex.local(t, kInfinite); }
+
+/// True if the perturbed sphere of the tet holds p. A ghost is in conflict if p lies strictly beyond its hull facet, or
+/// in the facet's plane and inside the finite neighbour's sphere, which cuts the plane in the facet's circle.
+bool in_conflict(const TetComplex& complex, const Sites& sites, TetId t, const Vec3& p, VertexId tie_id);
+
+/// The tet that contains p: finite and closed, or a ghost whose hull facet has p strictly beyond. Randomised visibility
+/// walk; after a bound on its steps (it may cycle where the tetrahedralization is not Delaunay) every tet is tried.
+/// Invalid only if there is no tet, or the hull is not convex.
+TetId walk(const TetComplex& complex, const Sites& sites, const Vec3& p, TetId start, Stream& stream);
+
+/// A finite tet with its four ghosts; orient3d(a,b,c,d) must be positive. Returns the finite tet.
+TetId add_first_tet(TetComplex& complex, VertexId a, VertexId b, VertexId c, VertexId d);
+
+/// Replaces the tets, which form a ball, by the star of v over the ball's boundary. `marks` must say kInside
+/// or kBase of `tets` and of no other. Carries locks and regions. New tets have v as local vertex 3.
+void replace_by_star(TetComplex& complex, Marks& marks, VertexId v, std::span<const TetId> tets,
+                     std::span<const TetFacet> boundary, std::vector<TetId>& star);
+
+}  // namespace curvetet::kernel

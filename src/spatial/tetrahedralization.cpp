@@ -1,0 +1,166 @@
+// Queries, constraints and the commit. A vertex knows one of its tets; everything around it is found by turning or
+// flooding from there, so there is no further table to keep right when flips change the complex.
+#include "spatial/tetrahedralization.h"
+
+#include <utility>
+
+namespace curvetet {
+
+namespace {
+
+std::uint64_t segment_key(VertexId a, VertexId b) {
+  const auto [low, high] = std::minmax(a.value(), b.value());
+  return static_cast<std::uint64_t>(low) << 32 | high;
+}
+
+}  // namespace
+
+const char* name(Refusal refusal) {
+  switch (refusal) {
+    case Refusal::none:
+      return "none";
+    case Refusal::duplicate:
+      return "duplicate";
+    case Refusal::on_locked_facet:
+      return "on_locked_facet";
+    case Refusal::on_kept_segment:
+      return "on_kept_segment";
+    case Refusal::locked_cavity:
+      return "locked_cavity";
+    case Refusal::outside:
+      return "outside";
+    case Refusal::too_close:
+      return "too_close";
+    case Refusal::encroaches:
+      return "encroaches";
+  }
+  return "none";
+}
+
+Tetrahedralization::Tetrahedralization(const VertexStore& vertices, std::uint64_t seed)
+    : vertices_(&vertices), seed_(seed) {}
+
+void Tetrahedralization::cover_vertices() {
+  if (vertex_tet_.size() < vertices_->size()) vertex_tet_.resize(vertices_->size());
+  if (kept_degree_.size() < vertices_->size()) kept_degree_.resize(vertices_->size());
+}
+
+TetId Tetrahedralization::locate(Vec3 p, TetId hint) const {
+  const auto usable = [&](TetId t) { return t.value() < complex_.slots() && complex_.is_alive(t); };
+  TetId start = usable(hint) ? hint : usable(last_) ? last_ : TetId();
+  for (std::size_t slot = 0; !start.valid() && slot < complex_.slots(); ++slot) {
+    if (complex_.is_alive(TetId(slot))) start = TetId(slot);
+  }
+  if (!start.valid()) return TetId();
+  // A stream of its own for every call: a location does not depend on those before it.
+  kernel::Stream stream(seed_);
+  last_ = kernel::walk(complex_, sites(), p, start, stream);
+  return last_;
+}
+
+TetId Tetrahedralization::commit(const Cavity& cavity) {
+  CURVETET_CHECK(cavity.ok() && !cavity.tets.empty());
+  cover_vertices();
+  marks_.start(complex_.slots());
+  for (const TetId t : cavity.tets) {
+    CURVETET_CHECK(complex_.is_alive(t));
+    marks_.set(t.value(), kernel::Marks::kInside);
+  }
+  kernel::replace_by_star(complex_, marks_, cavity.vertex, cavity.tets, cavity.boundary, star_);
+  for (const TetId t : star_) touch(t);
+  last_ = star_.back();
+  return last_;
+}
+
+Refusal Tetrahedralization::insert(VertexId vertex, TetId hint) {
+  const Cavity cavity = find_cavity(vertex, hint);
+  if (cavity.ok()) commit(cavity);
+  return cavity.refusal;
+}
+
+void Tetrahedralization::star(VertexId v, std::vector<TetId>& out) const {
+  out.clear();
+  if (!contains(v)) return;
+  marks_.start(complex_.slots());
+  out.push_back(vertex_tet_[v]);
+  marks_.set(out[0].value(), kernel::Marks::kInside);
+  for (std::size_t k = 0; k < out.size(); ++k) {
+    const TetId t = out[k];
+    const int own = complex_.local(t, v);
+    for (int i = 0; i < 4; ++i) {
+      const TetId next = complex_.neighbour(t, i);
+      if (i == own || marks_.get(next.value()) != 0) continue;
+      marks_.set(next.value(), kernel::Marks::kInside);
+      out.push_back(next);
+    }
+  }
+}
+
+std::optional<TetEdge> Tetrahedralization::find_edge(VertexId a, VertexId b) const {
+  if (!contains(a) || !contains(b) || a == b) return std::nullopt;
+  std::vector<TetId> around;
+  star(a, around);
+  for (const TetId t : around) {
+    const int j = complex_.local(t, b);
+    if (j >= 0) return TetEdge{t, complex_.local(t, a), j};
+  }
+  return std::nullopt;
+}
+
+std::optional<TetFacet> Tetrahedralization::find_facet(VertexId a, VertexId b, VertexId c) const {
+  if (!contains(a) || !contains(b) || !contains(c) || a == b || b == c || c == a) return std::nullopt;
+  std::vector<TetId> around;
+  star(a, around);
+  for (const TetId t : around) {
+    const int j = complex_.local(t, b);
+    const int k = complex_.local(t, c);
+    if (j >= 0 && k >= 0) return TetFacet{t, 6 - complex_.local(t, a) - j - k};
+  }
+  return std::nullopt;
+}
+
+void Tetrahedralization::ring(TetEdge edge, std::vector<TetId>& out) const {
+  out.clear();
+  const VertexId a = complex_.vertex(edge.tet, edge.i);
+  const VertexId b = complex_.vertex(edge.tet, edge.j);
+  // In kFacet[i] the other three follow i in even order.
+  const std::array<int, 3>& others = kFacet[static_cast<std::size_t>(edge.i)];
+  const std::size_t at = others[0] == edge.j ? 0 : others[1] == edge.j ? 1 : 2;
+  // (others..., i) is even, and moving i to the front past three is odd: k is the one before j.
+  VertexId away = complex_.vertex(edge.tet, others[(at + 2) % 3]);
+  TetId t = edge.tet;
+  do {
+    out.push_back(t);
+    VertexId kept;
+    for (const VertexId v : complex_.vertices(t)) {
+      if (v != a && v != b && v != away) kept = v;
+    }
+    t = complex_.neighbour(t, complex_.local(t, away));
+    away = kept;
+  } while (t != edge.tet);
+}
+
+void Tetrahedralization::keep_segment(VertexId a, VertexId b) {
+  cover_vertices();
+  if (!kept_.insert(segment_key(a, b)).second) return;
+  ++kept_degree_[a];
+  ++kept_degree_[b];
+}
+
+void Tetrahedralization::release_segment(VertexId a, VertexId b) {
+  if (kept_.erase(segment_key(a, b)) == 0) return;
+  --kept_degree_[a];
+  --kept_degree_[b];
+}
+
+bool Tetrahedralization::is_kept(VertexId a, VertexId b) const {
+  return !kept_.empty() && kept_.contains(segment_key(a, b));
+}
+
+void Tetrahedralization::touch(TetId t) {
+  for (const VertexId v : complex_.vertices(t)) {
+    if (v != kInfinite) vertex_tet_[v] = t;
+  }
+}
+
+}  // namespace curvetet
