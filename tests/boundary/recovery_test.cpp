@@ -73,7 +73,7 @@ TEST_P(Recovery, PaperModeLocksEveryFaceAndTellsTheSolidsApart) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Bodies, Recovery, testing::ValuesIn(cases()),
-                         [](const auto& info) { return std::string(info.param.name); });
+                         [](const auto& tested) { return std::string(tested.param.name); });
 
 TEST(Crossings, CoarseThinShellWithoutGapSizesIsCured) {
   const Model model = make_shell(10, 9.8);
