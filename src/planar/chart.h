@@ -5,8 +5,9 @@
 
 namespace curvetet {
 
-/// q = (scale_u * (u - centre_u), scale_v * (v - centre_v)), rounded to 2^-42; the trimmed domain fits into [-1/2, 1/2]^2 with
-/// room around. The scales make the metric at q as near to a multiple of the identity as a constant scaling can.
+/// q = (scale_u * (u - centre_u), scale_v * (v - centre_v)), rounded to 2^-42; the trimmed domain fits into [-1/2,
+/// 1/2]^2 with room around. The scales make the metric at q as near to a multiple of the identity as a constant scaling
+/// can.
 struct Chart {
   Vec2 centre{};
   double scale_u = 1, scale_v = 1;

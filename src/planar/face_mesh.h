@@ -1,8 +1,9 @@
-// t_ps: the triangulation of one CAD face in its parameter plane. Nodes are {vertex id, chart point}; a seam vertex has two
-// nodes, a pole one node per end of its degenerate edge plus those along it. Triangles turn left in the chart, exactly.
+// t_ps: the triangulation of one CAD face in its parameter plane. Nodes are {vertex id, chart point}; a seam vertex has
+// two nodes, a pole one node per end of its degenerate edge plus those along it. Triangles turn left in the chart,
+// exactly.
 //
-// Edges that lie on a use of a CAD edge are constrained: they carry the use's number and the segment's place is found by
-// its two nodes. Everything else may be flipped.
+// Edges that lie on a use of a CAD edge are constrained: they carry the use's number and the segment's place is found
+// by its two nodes. Everything else may be flipped.
 #pragma once
 
 #include <array>
@@ -16,6 +17,8 @@
 #include "base/ids.h"
 #include "mesh/vertex_store.h"
 #include "planar/chart.h"
+#include "planar/node_index.h"
+#include "planar/segment_grid.h"
 
 namespace curvetet {
 
@@ -27,7 +30,7 @@ struct FaceNode {
 /// neighbour[i] and use[i] belong to the edge opposite node[i], that is (node[i+1], node[i+2]).
 struct FaceTriangle {
   std::array<NodeId, 3> node;
-  std::array<TriangleId, 3> neighbour;  ///< invalid on the boundary of the domain
+  std::array<TriangleId, 3> neighbour;          ///< invalid on the boundary of the domain
   std::array<std::int32_t, 3> use{-1, -1, -1};  ///< number of the edge use it lies on (FaceMesh input), or -1
   bool alive() const { return node[0].valid(); }
 };
@@ -40,27 +43,28 @@ struct FaceEdge {
 
 enum class PlanarRefusal : std::uint8_t {
   none,
-  outside,         ///< not in the domain
-  on_constraint,   ///< on (or beyond) a constrained edge
-  duplicate,       ///< at an existing node
-  folded,          ///< a new triangle would not turn left, or its normal opposes the surface's
-  invariant,       ///< the region between chord and arc holds another node or loop
+  outside,        ///< not in the domain
+  on_constraint,  ///< on (or beyond) a constrained edge
+  duplicate,      ///< at an existing node
+  folded,         ///< a new triangle would not turn left, or its normal opposes the surface's
+  invariant,      ///< the region between chord and arc holds another node or loop
 };
 
 /// One polygonal chain of the input: the nodes along one edge use in the order of its loop.
 struct ChainInput {
-  std::int32_t use = 0;                ///< number handed back in FaceTriangle::use
-  std::vector<VertexId> vertices;      ///< first and last included
-  std::vector<Vec2> q;                 ///< chart points, as many; where two chains of a loop join, the first's end is taken
-  bool two_sided = false;              ///< internal: triangles on both sides
+  std::int32_t use = 0;            ///< number handed back in FaceTriangle::use
+  std::vector<VertexId> vertices;  ///< first and last included
+  std::vector<Vec2> q;             ///< chart points, as many; where two chains of a loop join, the first's end is taken
+  bool two_sided = false;          ///< internal: triangles on both sides
 };
 struct LoopInput {
-  std::vector<ChainInput> chains;      ///< closed, the domain to the left; a two-sided chain stands alone in its own LoopInput
-  bool open = false;                   ///< an open internal chain
+  std::vector<ChainInput>
+      chains;         ///< closed, the domain to the left; a two-sided chain stands alone in its own LoopInput
+  bool open = false;  ///< an open internal chain
 };
 struct FaceInput {
   std::vector<LoopInput> loops;
-  std::vector<FaceNode> isolated;      ///< vertices that must become nodes
+  std::vector<FaceNode> isolated;  ///< vertices that must become nodes
 };
 
 /// Loops that cross or are not nested: which chains' segments are at fault, so that the caller can split them.
@@ -74,15 +78,15 @@ class FaceMesh {
  public:
   Chart chart;
 
-  /// Constrained triangulation of the domain the loops bound (exact; interior found by winding). On faults nothing is built
-  /// and all of them are returned.
+  /// Constrained triangulation of the domain the loops bound (exact; interior found by winding). On faults nothing is
+  /// built and all of them are returned.
   std::vector<LoopFault> build(const FaceInput& input);
 
   const FaceNode& node(NodeId n) const { return nodes_[n]; }
   const FaceTriangle& triangle(TriangleId t) const { return triangles_[t]; }
   std::size_t node_count() const { return nodes_.size(); }
   std::size_t triangle_slots() const { return triangles_.size(); }
-  std::size_t triangle_count() const;    ///< alive
+  std::size_t triangle_count() const;  ///< alive
   std::array<VertexId, 3> vertices(TriangleId t) const;
   /// The nodes that carry a vertex (one, or several for seams and poles).
   std::vector<NodeId> nodes_of(VertexId v) const;
@@ -94,18 +98,27 @@ class FaceMesh {
 
   /// The triangle that contains q (walk from the hint, then a scan); empty if outside.
   std::optional<TriangleId> locate(Vec2 q, TriangleId hint = TriangleId()) const;
+  /// Where a walk from a triangle towards q ends: at the triangle that contains q, or before a constrained edge that q
+  /// lies strictly beyond (the segment a refinement would split instead). Neither if the walk ran into its step bound.
+  struct WalkEnd {
+    std::optional<TriangleId> triangle;
+    std::optional<FaceEdge> blocked;
+  };
+  WalkEnd walk(Vec2 q, TriangleId from) const;
 
-  /// Decides whether the edge shared by two triangles (a,b,c) and (b,a,d) should be flipped to cd: the caller's Delaunay
-  /// criterion (in space, or in the metric). Asked only where the flip is valid in the chart.
+  /// Decides whether the edge shared by two triangles (a,b,c) and (b,a,d) should be flipped to cd: the caller's
+  /// Delaunay criterion (in space, or in the metric). Asked only where the flip is valid in the chart.
   using FlipWanted = std::function<bool(NodeId a, NodeId b, NodeId c, NodeId d)>;
 
   /// Would inserting at q be legal? `triangle` contains q. Nothing is changed.
   PlanarRefusal judge_insert(Vec2 q, TriangleId triangle) const;
-  /// Inserts an interior node and restores the criterion by flips. `changed`: every triangle that was touched (alive ones).
-  NodeId insert(VertexId vertex, Vec2 q, TriangleId triangle, const FlipWanted& wanted, std::vector<TriangleId>& changed);
+  /// Inserts an interior node and restores the criterion by flips. `changed`: every triangle that was touched (alive
+  /// ones).
+  NodeId insert(VertexId vertex, Vec2 q, TriangleId triangle, const FlipWanted& wanted,
+                std::vector<TriangleId>& changed);
 
-  /// Splits the constrained edge at a node on its arc (which is usually not on the chord). `invariant` if the region between
-  /// chord and the two new chords holds another node or edge, then nothing is changed.
+  /// Splits the constrained edge at a node on its arc (which is usually not on the chord). `invariant` if the region
+  /// between chord and the two new chords holds another node or edge, then nothing is changed.
   PlanarRefusal judge_split(FaceEdge edge, Vec2 q) const;
   NodeId split(FaceEdge edge, VertexId vertex, Vec2 q, const FlipWanted& wanted, std::vector<TriangleId>& changed);
 
@@ -114,18 +127,84 @@ class FaceMesh {
   /// Lawson's flips from the given triangles until none is wanted; bounded, deterministic.
   void restore(std::span<const TriangleId> from, const FlipWanted& wanted, std::vector<TriangleId>& changed);
 
-  /// Validity: what is broken and where; empty when valid. Links reciprocal, all triangles turn left exactly, constraints present.
+  /// Removes a node without constrained edges and fills its star without flips, then restores the criterion if one is
+  /// given. False, and nothing changed, for any other node. The node keeps its number but is in no triangle.
+  bool remove_node(NodeId n, const FlipWanted& wanted, std::vector<TriangleId>& changed);
+  bool remove_node(NodeId n);
+
+  /// As build, then inserts every former node that was on no constrained edge and lies strictly inside the new domain;
+  /// the vertices of the others are listed in `dropped`. On faults the former mesh stays. Node numbers change.
+  std::vector<LoopFault> rebuild(const FaceInput& input, std::vector<VertexId>& dropped);
+
+  /// Validity: what is broken and where; empty when valid. Links reciprocal, all triangles turn left exactly,
+  /// constraints present.
   std::vector<std::string> check() const;
 
-  /// Replaces the connectivity by another set of triangles over the same nodes (T_Γ after recovery); false if it does not
-  /// form a valid surface with the same constrained edges.
+  /// Replaces the connectivity by another set of triangles over the same nodes (T_Γ after recovery); false if it does
+  /// not form a valid surface with the same constrained edges.
   bool replace(const std::vector<std::array<NodeId, 3>>& triangles);
 
  private:
+  friend class FaceMeshBuilder;
+  friend class FaceMeshChecker;
+  enum class Stop : std::uint8_t { at_boundary, at_constraints };
+  /// What splitting a constrained edge at q would do.
+  struct SplitPlan {
+    PlanarRefusal refusal = PlanarRefusal::none;
+    enum class Side : std::uint8_t { on_chord, inside, outside } side = Side::on_chord;
+    FaceEdge edge;      ///< the edge as seen from the triangle on q's side (any side if on the chord or outside)
+    TriangleId holder;  ///< inside: a triangle that contains q
+  };
+
+  // face_mesh.cpp
+  Vec2 point(NodeId n) const { return nodes_[n].q; }
+  bool has_edge(FaceEdge e) const;
+  WalkEnd walk(Vec2 q, TriangleId from, Stop stop) const;
+  TriangleId nearby_triangle(Vec2 q) const;
+  bool contains(TriangleId t, Vec2 q) const;
+  FaceEdge mirror(FaceEdge e) const;
+  FaceEdge across(FaceEdge e) const;  // as mirror; without a triangle at the boundary
+  NodeId add_node(VertexId vertex, Vec2 q);
+  TriangleId add_triangle(NodeId a, NodeId b, NodeId c);
+  void remove_triangle(TriangleId t);
+  void link(FaceEdge a, FaceEdge b);
+  void relink(TriangleId neighbour, TriangleId from, TriangleId to);
+  void find_pinched();
+  void index_boundary();
+  bool on_boundary(FaceEdge e) const { return !triangles_[e.triangle].neighbour[e.local].valid(); }
+  bool is_constrained(FaceEdge e) const { return triangles_[e.triangle].use[e.local] != -1; }
+  std::array<NodeId, 2> ends(FaceEdge e) const;
+
+  // insert.cpp
+  void place(NodeId n, TriangleId t, std::vector<TriangleId>& fan);
+  void place_in_triangle(NodeId n, TriangleId t, std::vector<TriangleId>& fan);
+  void place_on_edge(NodeId n, FaceEdge e, std::vector<TriangleId>& fan);
+  void flip_star(NodeId n, std::vector<TriangleId>& fan, const FlipWanted& wanted);
+  bool can_flip(FaceEdge e) const;
+  std::array<TriangleId, 2> flip_edge(FaceEdge e);
+
+  // cavity.cpp
+  void recover_edge(NodeId a, NodeId b, std::vector<TriangleId>& made);
+  void fill_polygon(std::span<const NodeId> polygon, std::vector<std::array<NodeId, 3>>& out) const;
+  void replace_cavity(std::vector<TriangleId>& cavity, std::span<const std::array<NodeId, 3>> fill,
+                      std::vector<TriangleId>& made);
+
+  // split.cpp
+  SplitPlan plan_split(FaceEdge edge, Vec2 q) const;
+  SplitPlan plan_inside(FaceEdge edge, Vec2 q) const;
+  SplitPlan plan_outside(FaceEdge edge, Vec2 q) const;
+  void split_inside(FaceEdge edge, NodeId n, TriangleId holder, std::vector<TriangleId>& made);
+  void split_outside(FaceEdge edge, NodeId n, std::vector<TriangleId>& made);
+
   IndexedVector<NodeId, FaceNode> nodes_;
   IndexedVector<TriangleId, FaceTriangle> triangles_;
   IndexedVector<NodeId, TriangleId> node_triangle_;
   std::vector<TriangleId> free_;
+  NodeIndex index_;
+  SegmentGrid boundary_;         // the edges of one triangle, by their nodes as that triangle sees them
+  std::vector<NodeId> pinched_;  // nodes where the domain touches itself: more than one fan; sorted
+  std::size_t constrained_ = 0;  // sides of triangles on constrained edges
+  std::vector<TriangleId> scratch_;
 };
 
 }  // namespace curvetet
