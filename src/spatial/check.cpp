@@ -29,9 +29,11 @@ class Checker {
         check_positive(t);
       }
       check_locks(t);
+      collect_edges(t);
       if (delaunay_) check_delaunay(t);
     }
     check_vertex_tets();
+    check_kept_segments();
     check_hull_is_sphere();
     return std::move(findings_);
   }
@@ -133,6 +135,14 @@ class Checker {
     }
   }
 
+  void collect_edges(TetId t) {
+    for (const auto& [i, j] : kEdge) {
+      const VertexId a = complex_.vertex(t, i);
+      const VertexId b = complex_.vertex(t, j);
+      if (mesh_.is_kept(a, b)) edges_.insert({std::min(a, b), std::max(a, b)});
+    }
+  }
+
   int insphere(TetId t, VertexId v) const {
     const TetComplex::Vertices& w = complex_.vertices(t);
     return insphere_perturbed(mesh_.vertices().positions(), w[0], w[1], w[2], w[3], v);
@@ -160,6 +170,12 @@ class Checker {
     }
   }
 
+  void check_kept_segments() {
+    for (const auto& [a, b] : mesh_.kept_segments()) {
+      if (!edges_.contains({a, b})) find("the kept segment " + text(a) + " " + text(b) + " is not an edge");
+    }
+  }
+
   void check_hull_is_sphere() {
     if (complex_.alive() > 0 && ghosts_ + 4 != 2 * hull_.size()) find("the hull is not a sphere");
   }
@@ -168,6 +184,7 @@ class Checker {
   const TetComplex& complex_;
   const bool delaunay_;
   std::set<VertexId> used_, hull_;
+  std::set<std::array<VertexId, 2>> edges_;  // kept segments that were seen
   std::size_t ghosts_ = 0;
   std::vector<std::string> findings_;
 };

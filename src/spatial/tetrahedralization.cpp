@@ -2,15 +2,14 @@
 // flooding from there, so there is no further table to keep right when flips change the complex.
 #include "spatial/tetrahedralization.h"
 
-#include <utility>
+#include <algorithm>
 
 namespace curvetet {
 
 namespace {
 
 std::uint64_t segment_key(VertexId a, VertexId b) {
-  const auto [low, high] = std::minmax(a.value(), b.value());
-  return static_cast<std::uint64_t>(low) << 32 | high;
+  return static_cast<std::uint64_t>(std::min(a, b).value()) << 32 | std::max(a, b).value();
 }
 
 }  // namespace
@@ -155,6 +154,17 @@ void Tetrahedralization::release_segment(VertexId a, VertexId b) {
 
 bool Tetrahedralization::is_kept(VertexId a, VertexId b) const {
   return !kept_.empty() && kept_.contains(segment_key(a, b));
+}
+
+std::vector<std::array<VertexId, 2>> Tetrahedralization::kept_segments() const {
+  std::vector<std::uint64_t> keys(kept_.begin(), kept_.end());
+  std::sort(keys.begin(), keys.end());
+  std::vector<std::array<VertexId, 2>> segments;
+  segments.reserve(keys.size());
+  for (const std::uint64_t key : keys) {
+    segments.push_back({VertexId(static_cast<std::uint32_t>(key >> 32)), VertexId(static_cast<std::uint32_t>(key))});
+  }
+  return segments;
 }
 
 void Tetrahedralization::touch(TetId t) {

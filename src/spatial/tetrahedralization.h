@@ -96,6 +96,8 @@ class Tetrahedralization {
   void keep_segment(VertexId a, VertexId b);
   void release_segment(VertexId a, VertexId b);
   bool is_kept(VertexId a, VertexId b) const;
+  /// All of them, smaller id first, sorted.
+  std::vector<std::array<VertexId, 2>> kept_segments() const;
 
   /// To be called by code that changes the complex by flips: keeps vertex_tet_ right for the vertices of t.
   void touch(TetId t);
@@ -109,7 +111,7 @@ class Tetrahedralization {
   std::uint64_t seed_;
   TetComplex complex_;
   IndexedVector<VertexId, TetId> vertex_tet_;
-  std::unordered_set<std::uint64_t> kept_;              // looked up, never iterated
+  std::unordered_set<std::uint64_t> kept_;              // iterated only to be sorted
   IndexedVector<VertexId, std::uint32_t> kept_degree_;  // how many kept segments end there
   std::vector<TetId> star_;
   mutable TetId last_;                  // where the last location ended
