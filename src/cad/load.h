@@ -1,4 +1,5 @@
-// From a CAD file to a Model: read, convert units, heal with a report, classify solids. The only room that sees OpenCASCADE.
+// From a CAD file to a Model: read, convert units, heal with a report, classify solids. The only room that sees
+// OpenCASCADE.
 #pragma once
 
 #include <string>
@@ -10,17 +11,18 @@
 namespace curvetet {
 
 struct LoadOptions {
-  std::string input_unit;       ///< for files that carry no unit: "mm", "cm", "m", "inch"; empty: mm
-  bool isolate = true;          ///< read and heal in a helper process, so that a crash or a loop there becomes a message
-  double isolate_time_limit = 60;   ///< seconds
+  std::string input_unit;  ///< for files that carry no unit: "mm", "cm", "m", "inch"; empty: mm
+  bool isolate = true;     ///< read and heal in a helper process, so that a crash or a loop there becomes a message
+  double isolate_time_limit = 60;                            ///< seconds
   std::size_t isolate_memory_limit = std::size_t{4} << 30U;  ///< bytes
-  std::string helper;           ///< program that serves as helper ("curvetet" itself); empty: this executable
+  std::string helper;  ///< program that serves as helper ("curvetet" itself); empty: this executable
 };
 
 /// Reads STEP, IGES or BREP (by content, then by ending). Ids are those of the input shape, carried through healing.
 Result<Model> load_model(const std::string& path, const LoadOptions& options, Context& context);
 
-/// What the helper process runs: reads `path`, heals, writes the healed shape and its labels to `out_path`. Exit code for main.
+/// What the helper process runs: reads `path`, heals, writes the healed shape and its labels to `out_path`. Exit code
+/// for main.
 int run_cad_helper(int argc, char** argv);
 
 }  // namespace curvetet

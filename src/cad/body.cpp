@@ -1,0 +1,69 @@
+#include "cad/body.h"
+
+#include <TopExp.hxx>
+#include <algorithm>
+
+namespace curvetet {
+
+std::vector<Label>& labels_of(CadBody& body, TopAbs_ShapeEnum type) {
+  switch (type) {
+    case TopAbs_SOLID:
+      return body.solids;
+    case TopAbs_FACE:
+      return body.faces;
+    case TopAbs_EDGE:
+      return body.edges;
+    default:
+      return body.vertices;
+  }
+}
+
+const std::vector<Label>& labels_of(const CadBody& body, TopAbs_ShapeEnum type) {
+  return labels_of(const_cast<CadBody&>(body), type);
+}
+
+TopTools_IndexedMapOfShape sub_shapes(const TopoDS_Shape& shape, TopAbs_ShapeEnum type) {
+  TopTools_IndexedMapOfShape map;
+  if (!shape.IsNull()) TopExp::MapShapes(shape, type, map);
+  return map;
+}
+
+void label_all(CadBody& body) {
+  for (const TopAbs_ShapeEnum type : kLabelled) {
+    auto& labels = labels_of(body, type);
+    labels.assign(static_cast<std::size_t>(sub_shapes(body.shape, type).Extent()), Label());
+    for (std::size_t i = 0; i < labels.size(); ++i) labels[i].cad_id = static_cast<std::uint32_t>(i + 1);
+  }
+  body.solid_paths.assign(body.solids.size(), "");
+}
+
+void replace_shape(CadBody& body, const TopoDS_Shape& shape,
+                   const std::function<TopoDS_Shape(const TopoDS_Shape&)>& image) {
+  const std::vector<std::string> old_paths = body.solid_paths;
+  for (const TopAbs_ShapeEnum type : kLabelled) {
+    const TopTools_IndexedMapOfShape before = sub_shapes(body.shape, type), after = sub_shapes(shape, type);
+    const std::vector<Label> old = labels_of(body, type);
+    std::vector<Label> labels(static_cast<std::size_t>(after.Extent()));
+    std::vector<std::string> paths(labels.size());
+    std::uint32_t next = 0;
+    for (int i = 1; i <= before.Extent(); ++i) {
+      const std::size_t from = static_cast<std::size_t>(i - 1);
+      next = std::max(next, old[from].cad_id);
+      const TopTools_IndexedMapOfShape parts = sub_shapes(image(before(i)), type);
+      for (int k = 1; k <= parts.Extent(); ++k) {
+        const int found = after.FindIndex(parts(k));
+        if (found == 0 || labels[static_cast<std::size_t>(found - 1)].cad_id != 0) continue;
+        labels[static_cast<std::size_t>(found - 1)] = old[from];
+        if (type == TopAbs_SOLID) paths[static_cast<std::size_t>(found - 1)] = old_paths[from];
+      }
+    }
+    for (Label& label : labels) {
+      if (label.cad_id == 0) label.cad_id = ++next;
+    }
+    labels_of(body, type) = std::move(labels);
+    if (type == TopAbs_SOLID) body.solid_paths = std::move(paths);
+  }
+  body.shape = shape;
+}
+
+}  // namespace curvetet

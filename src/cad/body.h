@@ -1,0 +1,41 @@
+// What reading and healing hand on: a shape and a label for each of its parts. Inside cad only.
+#pragma once
+
+#include <TopAbs_ShapeEnum.hxx>
+#include <TopTools_IndexedMapOfShape.hxx>
+#include <TopoDS_Shape.hxx>
+#include <array>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "geometry/model.h"
+
+namespace curvetet {
+
+/// A shape with labels. The labels of a type are as many as, and in the order of, TopExp::MapShapes on the shape.
+struct CadBody {
+  TopoDS_Shape shape;
+  std::vector<Label> solids, faces, edges, vertices;
+  std::vector<std::string> solid_paths;  ///< assembly path per solid
+  std::string unit = "mm";
+  std::vector<HealingNote> notes;
+};
+
+/// The four types that carry labels, in the order solids, faces, edges, vertices.
+inline constexpr std::array kLabelled{TopAbs_SOLID, TopAbs_FACE, TopAbs_EDGE, TopAbs_VERTEX};
+std::vector<Label>& labels_of(CadBody& body, TopAbs_ShapeEnum type);
+const std::vector<Label>& labels_of(const CadBody& body, TopAbs_ShapeEnum type);
+
+/// Distinct sub-shapes of a type in the order of TopExp::MapShapes.
+TopTools_IndexedMapOfShape sub_shapes(const TopoDS_Shape& shape, TopAbs_ShapeEnum type);
+
+/// Numbers all sub-shapes 1..n, without names.
+void label_all(CadBody& body);
+
+/// Replaces the shape; `image` gives for a part of the old shape what became of it (null: removed; possibly several
+/// parts in a compound). Labels follow their parts; parts that come from nowhere get the next free ids.
+void replace_shape(CadBody& body, const TopoDS_Shape& shape,
+                   const std::function<TopoDS_Shape(const TopoDS_Shape&)>& image);
+
+}  // namespace curvetet

@@ -1,0 +1,430 @@
+// Only what the solids' faces need becomes part of the Model, in ascending order of id. Which side of a face a solid
+// lies on follows from the face's orientation in the solid's shells; shells that are inside out, by the sign of their
+// volume, are turned first, since many writers get this wrong and every later stage trusts it.
+#include "cad/convert.h"
+
+#include <BRepAdaptor_Curve.hxx>
+#include <BRepBndLib.hxx>
+#include <BRepClass3d_SolidClassifier.hxx>
+#include <BRepGProp.hxx>
+#include <BRep_Builder.hxx>
+#include <BRep_Tool.hxx>
+#include <Bnd_Box.hxx>
+#include <GProp_GProps.hxx>
+#include <TopExp.hxx>
+#include <TopExp_Explorer.hxx>
+#include <TopoDS.hxx>
+#include <TopoDS_Iterator.hxx>
+#include <TopoDS_Solid.hxx>
+#include <algorithm>
+#include <cmath>
+
+#include "cad/guard.h"
+#include "cad/loops.h"
+#include "cad/occt_geometry.h"
+
+namespace curvetet {
+namespace {
+
+constexpr double kInfinite = 1e50;
+constexpr int kFacesForTightBox = 2000;
+
+/// A face as one shell of a solid uses it.
+struct FaceUse {
+  int face = 0;  ///< index in the map of faces
+  bool reversed = false, internal = false;
+};
+
+struct ShellUse {
+  TopoDS_Shape shell;
+  std::vector<FaceUse> faces;
+  double volume = 0;
+  bool flipped = false;
+};
+
+class Converter {
+ public:
+  Converter(const CadBody& body, const std::string& source)
+      : body_(body),
+        source_(source),
+        solids_(sub_shapes(body.shape, TopAbs_SOLID)),
+        faces_(sub_shapes(body.shape, TopAbs_FACE)),
+        edges_(sub_shapes(body.shape, TopAbs_EDGE)),
+        vertices_(sub_shapes(body.shape, TopAbs_VERTEX)) {}
+
+  Result<Model> run() {
+    if (faces_.IsEmpty()) return Error{ErrorCode::no_faces, source_ + " holds no faces"};
+    if (solids_.IsEmpty()) return Error{ErrorCode::no_solid, source_ + " holds no solid"};
+    model_.unit = body_.unit;
+    model_.healing = body_.notes;
+    collect_shells();
+    mark_used();
+    if (const auto error = make_frame()) return *error;
+    make_vertices();
+    make_edges();
+    make_faces();
+    if (const auto error = make_solids()) return *error;
+    list_faces_of_edges();
+    return std::move(model_);
+  }
+
+ private:
+  void note(const std::string& entity, const std::string& what) { model_.healing.push_back({entity, what}); }
+  static std::string entity(const char* kind, const Label& label) {
+    return kind + std::string(" ") + std::to_string(label.cad_id);
+  }
+  const Label& face_label(int face) const { return body_.faces[static_cast<std::size_t>(face - 1)]; }
+  const Label& solid_label(int solid) const { return body_.solids[static_cast<std::size_t>(solid - 1)]; }
+
+  // --- solids and their shells ---
+
+  void collect_shells() {
+    shells_.resize(static_cast<std::size_t>(solids_.Extent()));
+    for (int s = 1; s <= solids_.Extent(); ++s) {
+      for (TopExp_Explorer shell(solids_(s), TopAbs_SHELL); shell.More(); shell.Next()) {
+        ShellUse use;
+        use.shell = shell.Current();
+        for (TopExp_Explorer face(use.shell, TopAbs_FACE); face.More(); face.Next()) {
+          const TopAbs_Orientation orientation = face.Current().Orientation();
+          if (orientation == TopAbs_EXTERNAL) continue;
+          use.faces.push_back(
+              {faces_.FindIndex(face.Current()), orientation == TopAbs_REVERSED, orientation == TopAbs_INTERNAL});
+        }
+        if (!use.faces.empty()) shells_[static_cast<std::size_t>(s - 1)].push_back(std::move(use));
+      }
+    }
+  }
+
+  void mark_used() {
+    face_used_.assign(static_cast<std::size_t>(faces_.Extent()) + 1, 0);
+    edge_used_.assign(static_cast<std::size_t>(edges_.Extent()) + 1, 0);
+    vertex_used_.assign(static_cast<std::size_t>(vertices_.Extent()) + 1, 0);
+    for (const auto& shells : shells_) {
+      for (const ShellUse& shell : shells) {
+        for (const FaceUse& use : shell.faces) face_used_[static_cast<std::size_t>(use.face)] = 1;
+      }
+    }
+    std::size_t ignored = 0;
+    for (int f = 1; f <= faces_.Extent(); ++f) {
+      if (face_used_[static_cast<std::size_t>(f)] == 0) {
+        ++ignored;
+        continue;
+      }
+      const TopTools_IndexedMapOfShape edges = sub_shapes(faces_(f), TopAbs_EDGE);
+      for (int e = 1; e <= edges.Extent(); ++e) edge_used_[static_cast<std::size_t>(edges_.FindIndex(edges(e)))] = 1;
+      const TopTools_IndexedMapOfShape vertices = sub_shapes(faces_(f), TopAbs_VERTEX);
+      for (int v = 1; v <= vertices.Extent(); ++v) {
+        vertex_used_[static_cast<std::size_t>(vertices_.FindIndex(vertices(v)))] = 1;
+      }
+    }
+    if (ignored > 0) note("file", std::to_string(ignored) + " faces that belong to no solid are left out");
+  }
+
+  std::optional<Error> make_frame() {
+    Bnd_Box box;
+    for (int s = 1; s <= solids_.Extent(); ++s) BRepBndLib::Add(solids_(s), box, false);
+    if (box.IsVoid()) return Error{ErrorCode::zero_size, source_ + " has no extent"};
+    const auto limit = [](const Bnd_Box& b) {
+      Box3 limits;
+      Standard_Real x0 = 0, y0 = 0, z0 = 0, x1 = 0, y1 = 0, z1 = 0;
+      b.Get(x0, y0, z0, x1, y1, z1);
+      limits.extend({x0, y0, z0});
+      limits.extend({x1, y1, z1});
+      return limits;
+    };
+    const auto largest = [](const Box3& b) {
+      double m = 0;
+      for (int i = 0; i < 3; ++i) m = std::max({m, std::abs(b.low[i]), std::abs(b.high[i])});
+      return m;
+    };
+    Box3 limits = limit(box);
+    if (box.IsOpen() || largest(limits) > kInfinite) {
+      return Error{ErrorCode::unbounded, source_ + " is not bounded: a face reaches to infinity"};
+    }
+    if (!finite(limits.low) || !finite(limits.high)) {
+      return Error{ErrorCode::not_finite, source_ + " has coordinates that are not finite numbers"};
+    }
+    if (faces_.Extent() <= kFacesForTightBox) {
+      Bnd_Box tight;
+      for (int s = 1; s <= solids_.Extent(); ++s) BRepBndLib::AddOptimal(solids_(s), tight, false, false);
+      if (!tight.IsVoid() && !tight.IsOpen()) limits = limit(tight);
+    }
+    if (!(limits.diagonal() > 0)) return Error{ErrorCode::zero_size, source_ + " has no extent"};
+    model_.frame = Frame::of(limits);
+    model_.box.extend(model_.frame.to_working(limits.low));
+    model_.box.extend(model_.frame.to_working(limits.high));
+    return std::nullopt;
+  }
+
+  // --- vertices and edges ---
+
+  double working(double length) const { return model_.frame.length_to_working(length); }
+
+  void make_vertices() {
+    vertex_id_.resize(vertex_used_.size());
+    for (int v = 1; v <= vertices_.Extent(); ++v) {
+      const std::size_t index = static_cast<std::size_t>(v);
+      next_vertex_label_ = std::max(next_vertex_label_, body_.vertices[index - 1].cad_id);
+      if (vertex_used_[index] == 0) continue;
+      const TopoDS_Vertex& shape = TopoDS::Vertex(vertices_(v));
+      vertex_id_[index] =
+          add_vertex(body_.vertices[index - 1], model_.frame.to_working(to_vec(BRep_Tool::Pnt(shape).XYZ())),
+                     working(BRep_Tool::Tolerance(shape)));
+    }
+  }
+
+  CadVertexId add_vertex(const Label& label, Vec3 point, double tolerance) {
+    ModelVertex vertex;
+    vertex.label = label;
+    vertex.point = snap(point);
+    vertex.tolerance = tolerance;
+    return model_.vertices.push_back(vertex);
+  }
+
+  CadVertexId vertex_of(const TopoDS_Vertex& vertex) const {
+    return vertex.IsNull() ? CadVertexId() : vertex_id_[static_cast<std::size_t>(vertices_.FindIndex(vertex))];
+  }
+
+  void make_edges() {
+    edge_id_.resize(edge_used_.size());
+    for (int e = 1; e <= edges_.Extent(); ++e) {
+      const std::size_t index = static_cast<std::size_t>(e);
+      next_edge_label_ = std::max(next_edge_label_, body_.edges[index - 1].cad_id);
+      if (edge_used_[index] == 0) continue;
+      edge_id_[index] = add_edge(TopoDS::Edge(edges_(e).Oriented(TopAbs_FORWARD)), body_.edges[index - 1]);
+    }
+  }
+
+  EdgeId add_edge(const TopoDS_Edge& shape, const Label& label) {
+    ModelEdge edge;
+    edge.label = label;
+    edge.tolerance = working(BRep_Tool::Tolerance(shape));
+    Standard_Real low = 0, high = 0;
+    const Handle(Geom_Curve) curve = BRep_Tool::Curve(shape, low, high);
+    edge.degenerate = BRep_Tool::Degenerated(shape) || curve.IsNull();
+    if (edge.degenerate) BRep_Tool::Range(shape, low, high);
+    edge.low = low;
+    edge.high = high;
+    TopoDS_Vertex start, end;
+    TopExp::Vertices(shape, start, end);
+    edge.start = vertex_of(start);
+    edge.end = vertex_of(end);
+    if (!edge.degenerate) edge.curve = make_curve(curve, model_.frame);
+    complete_ends(edge);
+    if (!edge.degenerate && shrunk_to_point(edge)) {
+      note(entity("edge", label), "is shorter than its tolerance and taken as a point");
+      edge.degenerate = true;
+      edge.curve = nullptr;
+    }
+    return model_.edges.push_back(std::move(edge));
+  }
+
+  /// A closed curve may come without a vertex.
+  void complete_ends(ModelEdge& edge) {
+    if (edge.start.valid() && edge.end.valid()) return;
+    if (edge.start.valid() || edge.end.valid()) {
+      (edge.start.valid() ? edge.end : edge.start) = edge.start.valid() ? edge.start : edge.end;
+      return;
+    }
+    if (edge.degenerate || !(edge.low < edge.high)) return;
+    Label label;
+    label.cad_id = ++next_vertex_label_;
+    edge.start = edge.end = add_vertex(label, edge.curve->value(edge.low), edge.tolerance);
+    note(entity("edge", edge.label), "had no vertex; one was put on it");
+  }
+
+  bool shrunk_to_point(const ModelEdge& edge) const {
+    if (!edge.start.valid() || edge.start != edge.end || !(edge.low < edge.high)) return false;
+    const Vec3 first = edge.curve->value(edge.low);
+    for (int i = 1; i <= 16; ++i) {
+      if (distance(edge.curve->value(edge.low + (edge.high - edge.low) * i / 16), first) > edge.tolerance) return false;
+    }
+    return true;
+  }
+
+  EdgeId add_pole(CadVertexId vertex) {
+    ModelEdge edge;
+    edge.label.cad_id = ++next_edge_label_;
+    edge.low = 0;
+    edge.high = 1;
+    edge.start = edge.end = vertex;
+    edge.tolerance = model_.vertices[vertex].tolerance;
+    edge.degenerate = true;
+    return model_.edges.push_back(std::move(edge));
+  }
+
+  // --- faces ---
+
+  void make_faces() {
+    face_id_.resize(face_used_.size());
+    LoopContext context;
+    context.model = &model_;
+    context.edge = [this](const TopoDS_Edge& edge) {
+      return edge_id_[static_cast<std::size_t>(edges_.FindIndex(edge))];
+    };
+    context.add_pole = [this](CadVertexId vertex) { return add_pole(vertex); };
+    for (int f = 1; f <= faces_.Extent(); ++f) {
+      const std::size_t index = static_cast<std::size_t>(f);
+      if (face_used_[index] == 0) continue;
+      const std::size_t edges_before = model_.edges.size();
+      face_id_[index] = add_face(TopoDS::Face(faces_(f)), body_.faces[index - 1], context);
+      if (model_.edges.size() > edges_before) note(entity("face", face_label(f)), "a pole was put in");
+    }
+  }
+
+  FaceId add_face(const TopoDS_Face& shape, const Label& label, const LoopContext& context) {
+    ModelFace face;
+    face.label = label;
+    face.tolerance = working(BRep_Tool::Tolerance(shape));
+    const Handle(Geom_Surface) geometry = BRep_Tool::Surface(shape);
+    if (geometry.IsNull()) return model_.faces.push_back(std::move(face));
+    const std::shared_ptr<Surface> surface = make_surface(geometry, model_.frame);
+    face.surface = surface;
+    trace_loops(shape, context, face);
+    surface->set_domain(face.low, face.high);
+    for (TopoDS_Iterator it(shape.Oriented(TopAbs_FORWARD)); it.More(); it.Next()) {
+      if (it.Value().ShapeType() != TopAbs_VERTEX) continue;
+      const TopoDS_Vertex& vertex = TopoDS::Vertex(it.Value());
+      const gp_Pnt2d uv = BRep_Tool::Parameters(vertex, shape);
+      face.internal_vertices.push_back(vertex_of(vertex));
+      face.internal_vertex_uv.push_back({uv.X(), uv.Y()});
+    }
+    GProp_GProps properties;
+    BRepGProp::SurfaceProperties(shape, properties, false, false);
+    face.area = std::abs(properties.Mass()) * model_.frame.scale * model_.frame.scale;
+    return model_.faces.push_back(std::move(face));
+  }
+
+  // --- solids ---
+
+  std::optional<Error> make_solids() {
+    side_set_.assign(model_.faces.size(), 0);
+    for (int s = 1; s <= solids_.Extent(); ++s) {
+      ModelSolid solid;
+      solid.label = solid_label(s);
+      solid.path = body_.solid_paths[static_cast<std::size_t>(s - 1)];
+      auto& shells = shells_[static_cast<std::size_t>(s - 1)];
+      if (shells.empty()) {
+        note(entity("solid", solid.label), "has no faces and is left out");
+        continue;
+      }
+      orient_shells(shells, entity("solid", solid.label));
+      double volume = 0;
+      for (const ShellUse& shell : shells) volume += shell.flipped ? -shell.volume : shell.volume;
+      solid.volume = volume * std::pow(model_.frame.scale, 3);
+      const SolidId id = model_.solids.push_back(std::move(solid));
+      for (const ShellUse& shell : shells) {
+        for (const FaceUse& use : shell.faces) {
+          if (auto error = put_on_side(use, shell.flipped, id)) return error;
+        }
+      }
+      auto& faces = model_.solids[id].faces;
+      std::sort(faces.begin(), faces.end());
+      faces.erase(std::unique(faces.begin(), faces.end()), faces.end());
+    }
+    return std::nullopt;
+  }
+
+  /// The largest shell must have a positive volume; another one a negative volume if it lies inside of the largest.
+  void orient_shells(std::vector<ShellUse>& shells, const std::string& solid) {
+    std::size_t outer = 0;
+    for (std::size_t i = 0; i < shells.size(); ++i) {
+      GProp_GProps properties;
+      BRepGProp::VolumeProperties(shells[i].shell, properties, false, false, false);
+      shells[i].volume = properties.Mass();
+      if (std::abs(shells[i].volume) > std::abs(shells[outer].volume)) outer = i;
+    }
+    if (shells[outer].volume < 0) {
+      for (ShellUse& shell : shells) shell.flipped = true;
+      note(solid, "was inside out and is turned");
+    }
+    for (std::size_t i = 0; i < shells.size(); ++i) {
+      if (i == outer) continue;
+      const double volume = shells[i].flipped ? -shells[i].volume : shells[i].volume;
+      if (volume > 0 && lies_inside(shells[i], shells[outer])) {
+        shells[i].flipped = !shells[i].flipped;
+        note(solid, "a void in it was inside out and is turned");
+      }
+    }
+  }
+
+  static bool lies_inside(const ShellUse& shell, const ShellUse& outer) {
+    TopoDS_Solid solid;
+    BRep_Builder builder;
+    builder.MakeSolid(solid);
+    builder.Add(solid, outer.shell);
+    BRepClass3d_SolidClassifier classifier(solid);
+    classifier.PerformInfinitePoint(1e-7);
+    const bool inside_out = classifier.State() == TopAbs_IN;
+    for (TopExp_Explorer vertex(shell.shell, TopAbs_VERTEX); vertex.More(); vertex.Next()) {
+      classifier.Perform(BRep_Tool::Pnt(TopoDS::Vertex(vertex.Current())), 1e-7);
+      if (classifier.State() == TopAbs_IN) return !inside_out;
+      if (classifier.State() == TopAbs_OUT) return inside_out;
+    }
+    return false;
+  }
+
+  std::optional<Error> put_on_side(const FaceUse& use, bool flipped, SolidId solid) {
+    const FaceId id = face_id_[static_cast<std::size_t>(use.face)];
+    ModelFace& face = model_.faces[id];
+    model_.solids[solid].faces.push_back(id);
+    const auto clash = [&](SolidId other) {
+      const Label& a = model_.solids[other].label;
+      const Label& b = model_.solids[solid].label;
+      return Error{ErrorCode::overlapping_solids,
+                   "solids " + std::to_string(a.cad_id) + " and " + std::to_string(b.cad_id) +
+                       " lie on the same side of face " + std::to_string(face.label.cad_id) + " of " + source_,
+                   {entity("solid", a), entity("solid", b), entity("face", face.label)},
+                   {},
+                   "cut one solid out of the other in the CAD system"};
+    };
+    if (use.internal) {
+      face.front = face.back = solid;
+      return std::nullopt;
+    }
+    const bool reversed = use.reversed != flipped;
+    if (side_set_[id.value()] == 0) {
+      side_set_[id.value()] = 1;
+      face.reversed = reversed;
+      face.back = solid;
+      return std::nullopt;
+    }
+    SolidId& side = face.reversed == reversed ? face.back : face.front;
+    if (side.valid()) return clash(side);
+    side = solid;
+    return std::nullopt;
+  }
+
+  void list_faces_of_edges() {
+    for (std::size_t f = 0; f < model_.faces.size(); ++f) {
+      const auto add = [&](const EdgeUse& use) {
+        auto& faces = model_.edges[use.edge].faces;
+        if (faces.empty() || faces.back() != FaceId(f)) faces.push_back(FaceId(f));
+      };
+      const ModelFace& face = model_.faces[FaceId(f)];
+      for (const Loop& loop : face.loops) std::for_each(loop.uses.begin(), loop.uses.end(), add);
+      std::for_each(face.internal_edges.begin(), face.internal_edges.end(), add);
+    }
+  }
+
+  const CadBody& body_;
+  const std::string& source_;
+  TopTools_IndexedMapOfShape solids_, faces_, edges_, vertices_;
+  std::vector<std::vector<ShellUse>> shells_;  ///< by solid
+  std::vector<char> face_used_, edge_used_, vertex_used_;
+  std::vector<char> side_set_;
+  std::vector<FaceId> face_id_;
+  std::vector<EdgeId> edge_id_;
+  std::vector<CadVertexId> vertex_id_;
+  std::uint32_t next_vertex_label_ = 0, next_edge_label_ = 0;
+  Model model_;
+};
+
+}  // namespace
+
+Result<Model> convert_body(const CadBody& body, const std::string& source) {
+  return guarded(ErrorCode::reader_failed, "cannot use the shape in " + source,
+                 [&] { return Converter(body, source).run(); });
+}
+
+}  // namespace curvetet

@@ -1,0 +1,16 @@
+// From a labelled shape to a Model. The shape is not changed; what is wrong with it is left to geometry/check.h to
+// find.
+#pragma once
+
+#include <string>
+
+#include "base/error.h"
+#include "cad/body.h"
+
+namespace curvetet {
+
+/// Before: the shape's solids are the body; faces outside of them are ignored (with a note). Errors: no_faces,
+/// no_solid, unbounded, not_finite, zero_size, overlapping_solids. `source` names the file in messages.
+Result<Model> convert_body(const CadBody& body, const std::string& source);
+
+}  // namespace curvetet
