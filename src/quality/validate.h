@@ -1,5 +1,5 @@
-// The independent check of a finished mesh: what `curvetet check MESH [CAD]` runs. Shares no code with the kernel but the
-// predicates.
+// The independent check of a finished mesh: what `curvetet check MESH [CAD]` runs. Shares no code with the kernel that
+// made the mesh, not even its predicates (quality/exact.h).
 #pragma once
 
 #include <array>
@@ -17,7 +17,7 @@ enum class Severity { error, warning };
 
 /// One kind of defect: how often, and the first few offenders.
 struct Finding {
-  std::string check;               ///< stable lower-case name, e.g. "negative_tet"
+  std::string check;  ///< stable lower-case name, e.g. "negative_tet"
   Severity severity = Severity::error;
   std::size_t count = 0;
   std::vector<std::string> examples;  ///< at most five: id, place, note
@@ -25,12 +25,12 @@ struct Finding {
 
 struct Histogram {
   double smallest = 0, largest = 0, mean = 0;
-  std::vector<std::size_t> bins;   ///< equal width over [0, 1] or [0, 180]
+  std::vector<std::size_t> bins;  ///< equal width over [0, 1] or [0, 180]
 };
 
 struct QualitySummary {
-  Histogram radius_ratio;          ///< 3 r / R in [0,1]
-  Histogram dihedral;              ///< smallest angle of each tet, degrees
+  Histogram radius_ratio;  ///< 3 r / R in [0,1]
+  Histogram dihedral;      ///< smallest angle of each tet, degrees
   std::size_t below_half_degree = 0, below_five_degrees = 0;
   Point worst_place{};
   double worst_dihedral = 0;
@@ -39,14 +39,14 @@ struct QualitySummary {
 struct ValidationReport {
   std::vector<Finding> findings;
   QualitySummary quality;
-  std::vector<double> solid_volumes;   ///< by solid entity
-  bool valid() const;                  ///< no finding of severity error
+  std::vector<double> solid_volumes;  ///< by solid entity
+  bool valid() const;                 ///< no finding of severity error
 };
 
-/// Checks the mesh alone, and against the model if given: exact positivity, conformity (each facet in one or two tets, on opposite
-/// sides), closed boundary equal to the labelled triangles, no boundary self-intersection, folds against CAD normals, vertices
-/// on their CAD entity, every CAD edge a chain of mesh edges, volumes within what chord heights explain, quality. The mesh's coordinates are
-/// in the CAD's unit times `unit_scale`.
+/// Checks the mesh alone, and against the model if given: exact positivity, conformity (each facet in one or two tets,
+/// on opposite sides), closed boundary equal to the labelled triangles, no boundary self-intersection, folds against
+/// CAD normals, vertices on their CAD entity, every CAD edge a chain of mesh edges, volumes within what chord heights
+/// explain, quality. The mesh's coordinates are in the CAD's unit times `unit_scale`.
 ValidationReport validate(const Mesh& mesh, const Model* model, double unit_scale, Context& context);
 
 }  // namespace curvetet

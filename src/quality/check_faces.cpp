@@ -1,0 +1,304 @@
+// The triangles of each CAD face against its surface: vertices on it, no folds, no part of it left uncovered.
+//
+// A foot is searched from the parameters of nearby nodes, then from a grid of samples; parameters stored in the mesh
+// are only a first guess and are never believed. Faces are independent, so they run in parallel, each with a clone of
+// its surface.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+
+#include "quality/box_tree.h"
+#include "quality/measures.h"
+#include "quality/model_checks.h"
+
+namespace curvetet::checks {
+namespace {
+
+constexpr int kGrid1 = 17;          ///< samples per direction for guesses
+constexpr int kCoverSamples = 8;    ///< per direction, for coverage
+constexpr int kSamplesPerUse = 24;  ///< of a loop's parameter curves
+constexpr std::size_t kGridGuesses = 4;
+
+/// What one face's task finds.
+struct FaceOutcome {
+  struct Off {
+    std::uint32_t node;
+    double distance, limit;
+  };
+  std::vector<Off> off;
+  std::vector<std::uint32_t> folds, lost;  ///< triangles
+  std::vector<Vec3> uncovered;
+  double slack = 0;  ///< volume between the facets and the surface, at most
+};
+
+/// Squared distance from p to the segment ab.
+double point_segment_distance2(Vec3 p, Vec3 a, Vec3 b) {
+  const Vec3 ab = b - a;
+  const double length2 = norm2(ab);
+  const double t = length2 > 0 ? std::clamp(dot(p - a, ab) / length2, 0.0, 1.0) : 0;
+  return norm2(p - (a + t * ab));
+}
+
+double point_triangle_distance2(Vec3 p, Vec3 a, Vec3 b, Vec3 c) {
+  const Vec3 n = cross(b - a, c - a);
+  const double n2 = norm2(n);
+  const double sides =
+      std::min({point_segment_distance2(p, a, b), point_segment_distance2(p, b, c), point_segment_distance2(p, c, a)});
+  if (!(n2 > 0)) return sides;
+  const bool over =
+      dot(cross(b - a, p - a), n) >= 0 && dot(cross(c - b, p - b), n) >= 0 && dot(cross(a - c, p - c), n) >= 0;
+  const double height = dot(p - a, n);
+  return over ? std::min(sides, height * height / n2) : sides;
+}
+
+/// Turns of a closed polygon around a point; empty when the point is too close to tell or the polygon is open.
+std::optional<int> winding(const std::vector<Vec2>& polygon, Vec2 p, Vec2 extent) {
+  double angle = 0;
+  for (std::size_t i = 0; i < polygon.size(); ++i) {
+    const Vec2 a = polygon[i] - p, b = polygon[(i + 1) % polygon.size()] - p;
+    const Vec2 as{a.x / extent.x, a.y / extent.y}, bs{b.x / extent.x, b.y / extent.y};
+    if (norm(as) < 0.02) return std::nullopt;
+    const double step = std::atan2(cross(as, bs), dot(as, bs));
+    if (std::abs(step) > 0.9 * std::numbers::pi) return std::nullopt;
+    angle += step;
+  }
+  return static_cast<int>(std::lround(angle / (2 * std::numbers::pi)));
+}
+
+/// The loop as a polygon in (u,v); empty when its uses do not join.
+std::vector<Vec2> loop_polygon(const Loop& loop, const std::vector<std::array<double, 2>>& ranges, Vec2 extent) {
+  std::vector<Vec2> polygon;
+  for (std::size_t k = 0; k < loop.uses.size(); ++k) {
+    const EdgeUse& use = loop.uses[k];
+    if (!use.curve) return {};
+    for (int i = 0; i <= kSamplesPerUse; ++i) {
+      const double s = static_cast<double>(use.reversed ? kSamplesPerUse - i : i) / kSamplesPerUse;
+      const Vec2 q = use.curve->value(ranges[k][0] + s * (ranges[k][1] - ranges[k][0]));
+      if (i == 0 && !polygon.empty()) {
+        const Vec2 gap = q - polygon.back();
+        if (std::abs(gap.x) > 0.01 * extent.x || std::abs(gap.y) > 0.01 * extent.y) return {};
+      }
+      polygon.push_back(q);
+    }
+  }
+  return polygon;
+}
+
+/// One face's task.
+class FaceTask {
+ public:
+  FaceTask(const MeshOnModel& m, FaceId id, const BoxTree& tree)
+      : m_(m), id_(id), face_(m.model.faces[id]), tree_(tree), projector_(face_) {}
+
+  FaceOutcome run(const Context& context) {
+    FaceOutcome outcome;
+    for (const std::uint32_t t : m_.triangles[id_]) {
+      if (context.should_stop()) return outcome;
+      check_triangle(t, outcome);
+    }
+    for (const Vec2 uv : domain_samples(m_.model, face_)) check_covered(projector_.value(uv), outcome);
+    return outcome;
+  }
+
+  static std::vector<Vec2> domain_samples(const Model& model, const ModelFace& face);
+
+ private:
+  void check_triangle(std::uint32_t t, FaceOutcome& outcome) {
+    const auto& nodes = m_.mesh.triangles[t];
+    std::array<Vec2, 3> guesses{};
+    std::size_t found = 0;
+    for (const std::uint32_t node : nodes) {
+      if (const auto foot = foot_of(node, std::span(guesses).first(found), outcome)) guesses[found++] = foot->uv;
+    }
+    const Vec3 a = m_.points[nodes[0]], b = m_.points[nodes[1]], c = m_.points[nodes[2]];
+    const auto foot = projector_.project((1.0 / 3) * (a + b + c), std::span(guesses).first(found));
+    if (!foot) {
+      outcome.lost.push_back(t);
+      return;
+    }
+    outcome.slack += triangle_area(a, b, c) * foot->distance;
+    if (dot(cross(b - a, c - a), projector_.outward_normal(foot->uv)) < 0) outcome.folds.push_back(t);
+  }
+
+  /// The foot of a node, found once; reports the node if it is off the surface.
+  std::optional<Foot> foot_of(std::uint32_t node, std::span<const Vec2> others, FaceOutcome& outcome) {
+    const auto at = std::lower_bound(nodes_.begin(), nodes_.end(), node);
+    const auto i = static_cast<std::size_t>(at - nodes_.begin());
+    if (known_[i] != 0) return feet_[i];
+    known_[i] = 1;
+    std::vector<Vec2> guesses;
+    const NodeOnCad* owner = node < m_.mesh.nodes.size() ? &m_.mesh.nodes[node] : nullptr;
+    if (owner != nullptr && owner->dimension == 2 && owner->entity < m_.faces.size() &&
+        m_.faces[owner->entity] == id_) {
+      guesses.push_back({owner->parameter[0], owner->parameter[1]});
+    }
+    guesses.insert(guesses.end(), others.begin(), others.end());
+    feet_[i] = projector_.project(m_.points[node], guesses);
+    const double limit = m_.limit(face_.tolerance, node);
+    const double distance = feet_[i] ? feet_[i]->distance : std::numeric_limits<double>::infinity();
+    if (!(distance <= limit)) outcome.off.push_back({node, distance, limit});
+    return feet_[i];
+  }
+
+  void check_covered(Vec3 sample, FaceOutcome& outcome) {
+    const auto& boundary = m_.topology.boundary;
+    const auto corner = [&](std::uint32_t f, std::size_t i) { return m_.points[boundary[f].vertices[i]]; };
+    const std::uint32_t f = tree_.nearest(sample, [&](std::uint32_t i) {
+      return point_triangle_distance2(sample, corner(i, 0), corner(i, 1), corner(i, 2));
+    });
+    if (f == kOutside) return;
+    const Vec3 a = corner(f, 0), b = corner(f, 1), c = corner(f, 2);
+    const double longest2 = std::max({norm2(b - a), norm2(c - b), norm2(a - c)});
+    if (point_triangle_distance2(sample, a, b, c) > 0.25 * longest2) outcome.uncovered.push_back(sample);
+  }
+
+  static std::vector<std::uint32_t> nodes_of(const MeshOnModel& m, FaceId id) {
+    std::vector<std::uint32_t> nodes;
+    for (const std::uint32_t t : m.triangles[id]) {
+      nodes.insert(nodes.end(), m.mesh.triangles[t].begin(), m.mesh.triangles[t].end());
+    }
+    std::sort(nodes.begin(), nodes.end());
+    nodes.erase(std::unique(nodes.begin(), nodes.end()), nodes.end());
+    return nodes;
+  }
+
+  const MeshOnModel& m_;
+  FaceId id_;
+  const ModelFace& face_;
+  const BoxTree& tree_;
+  FaceProjector projector_;
+  std::vector<std::uint32_t> nodes_ = nodes_of(m_, id_);
+  std::vector<std::uint8_t> known_ = std::vector<std::uint8_t>(nodes_.size(), 0);
+  std::vector<std::optional<Foot>> feet_ = std::vector<std::optional<Foot>>(nodes_.size());
+};
+
+std::vector<Vec2> FaceTask::domain_samples(const Model& model, const ModelFace& face) {
+  const Vec2 extent = face.high - face.low;
+  if (!(extent.x > 0) || !(extent.y > 0)) return {};
+  std::vector<std::vector<Vec2>> polygons;
+  for (const Loop& loop : face.loops) {
+    std::vector<std::array<double, 2>> ranges;
+    for (const EdgeUse& use : loop.uses) ranges.push_back({model.edges[use.edge].low, model.edges[use.edge].high});
+    polygons.push_back(loop_polygon(loop, ranges, extent));
+    if (polygons.back().empty()) return {};
+  }
+  std::vector<Vec2> samples;
+  for (int i = 0; i < kCoverSamples * kCoverSamples; ++i) {
+    const double s = (i % kCoverSamples + 0.5) / kCoverSamples, t = (i / kCoverSamples + 0.5) / kCoverSamples;
+    const Vec2 p{face.low.x + s * extent.x, face.low.y + t * extent.y};
+    int turns = 0;
+    const bool clear = std::all_of(polygons.begin(), polygons.end(), [&](const std::vector<Vec2>& polygon) {
+      const std::optional<int> w = winding(polygon, p, extent);
+      turns += w.value_or(0);
+      return w.has_value();
+    });
+    if (clear && turns == 1) samples.push_back(p);
+  }
+  return samples;
+}
+
+}  // namespace
+
+FaceProjector::FaceProjector(const ModelFace& face) : face_(face), surface_(face.surface->clone()) {}
+
+Vec3 FaceProjector::outward_normal(Vec2 uv) const {
+  const Vec3 n = surface_->normal(uv);
+  return face_.reversed ? -n : n;
+}
+
+bool FaceProjector::inside_box(Vec2 uv) const {
+  const Vec2 margin = 0.01 * (face_.high - face_.low);
+  const auto within = [](double x, double low, double high, double pad, double period) {
+    if (period > 0) x -= period * std::floor((x - (low - pad)) / period);
+    return x >= low - pad && x <= high + pad;
+  };
+  return within(uv.x, face_.low.x, face_.high.x, margin.x, surface_->period_u()) &&
+         within(uv.y, face_.low.y, face_.high.y, margin.y, surface_->period_v());
+}
+
+void FaceProjector::consider(Vec3 point, Vec2 guess, std::optional<Foot>& best) const {
+  const std::optional<Vec2> uv = surface_->project(point, guess);
+  if (!uv) return;
+  const Foot foot{*uv, distance(point, surface_->value(*uv)), inside_box(*uv)};
+  const bool better = !best || (foot.inside_box != best->inside_box ? foot.inside_box : foot.distance < best->distance);
+  if (better) best = foot;
+}
+
+void FaceProjector::sample() {
+  for (int i = 0; i < kGrid1 * kGrid1; ++i) {
+    const double s = static_cast<double>(i % kGrid1) / (kGrid1 - 1), t = static_cast<double>(i / kGrid1) / (kGrid1 - 1);
+    const Vec2 uv{face_.low.x + s * (face_.high.x - face_.low.x), face_.low.y + t * (face_.high.y - face_.low.y)};
+    sample_uv_.push_back(uv);
+    sample_value_.push_back(surface_->value(uv));
+  }
+}
+
+std::optional<Foot> FaceProjector::project(Vec3 point, std::span<const Vec2> guesses) {
+  std::optional<Foot> best;
+  for (const Vec2 guess : guesses) consider(point, guess, best);
+  if (best && best->inside_box) return best;
+  if (sample_uv_.empty()) sample();
+  std::vector<std::size_t> order(sample_uv_.size());
+  for (std::size_t i = 0; i < order.size(); ++i) order[i] = i;
+  std::partial_sort(order.begin(), order.begin() + kGridGuesses, order.end(), [&](std::size_t i, std::size_t j) {
+    const double di = norm2(sample_value_[i] - point), dj = norm2(sample_value_[j] - point);
+    return di != dj ? di < dj : i < j;
+  });
+  for (std::size_t k = 0; k < kGridGuesses; ++k) consider(point, sample_uv_[order[k]], best);
+  return best;
+}
+
+double MeshOnModel::limit(double entity_tolerance, std::uint32_t node) const {
+  return std::max(least_limit, 10 * std::max(entity_tolerance, tolerance[node]));
+}
+
+void check_faces(const MeshOnModel& m, Context& context, Findings& findings, std::vector<double>& solid_slack) {
+  std::vector<Box3> boxes(m.topology.boundary.size());
+  for (std::size_t i = 0; i < boxes.size(); ++i) {
+    for (const std::uint32_t v : m.topology.boundary[i].vertices) boxes[i].extend(m.points[v]);
+  }
+  const BoxTree tree(boxes);
+  std::vector<FaceId> order;
+  for (std::uint32_t f = 0; f < m.model.faces.size(); ++f) {
+    if (m.model.faces[FaceId(f)].front != m.model.faces[FaceId(f)].back) order.emplace_back(f);
+  }
+  std::stable_sort(order.begin(), order.end(),
+                   [&](FaceId a, FaceId b) { return m.triangles[a].size() > m.triangles[b].size(); });
+  IndexedVector<FaceId, FaceOutcome> outcomes(m.model.faces.size());
+  parallel_for(context, order.size(),
+               [&](std::size_t i) { outcomes[order[i]] = FaceTask(m, order[i], tree).run(context); });
+
+  const auto triangle = [&](std::uint32_t t, const ModelFace& face) {
+    return fmt::format("triangle {} of face {} at {}", t, face.label.cad_id,
+                       place(vec(m.mesh.points[m.mesh.triangles[t][0]])));
+  };
+  for (std::uint32_t f = 0; f < m.model.faces.size(); ++f) {
+    const ModelFace& face = m.model.faces[FaceId(f)];
+    const FaceOutcome& outcome = outcomes[FaceId(f)];
+    for (const auto& off : outcome.off) {
+      findings.add("vertex_off_face", Severity::error, [&] {
+        return fmt::format("node {} is {:.3g} from face {} (limit {:.3g}) at {}", off.node,
+                           m.to_mesh_length(off.distance), face.label.cad_id, m.to_mesh_length(off.limit),
+                           place(vec(m.mesh.points[off.node])));
+      });
+    }
+    for (const std::uint32_t t : outcome.folds) {
+      findings.add("fold", Severity::error, [&] { return triangle(t, face); });
+    }
+    for (const std::uint32_t t : outcome.lost) {
+      findings.add("centre_without_foot", Severity::warning, [&] { return triangle(t, face); });
+    }
+    for (const Vec3 p : outcome.uncovered) {
+      findings.add("uncovered_face", Severity::error,
+                   [&] { return fmt::format("face {} at {}", face.label.cad_id, m.place_of(p)); });
+    }
+    for (const SolidId s : {face.front, face.back}) {
+      if (s.valid()) solid_slack[s.value()] += outcome.slack;
+    }
+  }
+}
+
+}  // namespace curvetet::checks

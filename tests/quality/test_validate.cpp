@@ -1,0 +1,401 @@
+// A good mesh of each body passes with the model and without; each mutation makes the finding that names it.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <limits>
+#include <numbers>
+
+#include "quality/measures.h"
+#include "quality/validate.h"
+#include "sample_meshes.h"
+#include "support/bodies.h"
+
+namespace curvetet {
+namespace {
+
+std::string words(const ValidationReport& report) {
+  std::string text;
+  for (const Finding& f : report.findings) {
+    text += f.check + (f.severity == Severity::error ? " E " : " W ") + std::to_string(f.count);
+    for (const std::string& example : f.examples) text += "\n    " + example;
+    text += "\n";
+  }
+  return text;
+}
+
+const Finding* find(const ValidationReport& report, const std::string& check) {
+  for (const Finding& f : report.findings) {
+    if (f.check == check) return &f;
+  }
+  return nullptr;
+}
+
+struct Sample {
+  Model model;
+  Mesh mesh;
+};
+
+Sample box(int n = 2) {
+  Model model = test::make_boxes({2}, 3, 1);
+  Mesh mesh = test::mesh_boxes(model, {2}, 3, 1, n);
+  return {std::move(model), std::move(mesh)};
+}
+
+Sample cylinder(int sectors = 12) {
+  Model model = test::make_cylinder(2, 3);
+  Mesh mesh = test::mesh_cylinder(model, 2, 3, sectors);
+  return {std::move(model), std::move(mesh)};
+}
+
+Sample ball(int levels = 2) {
+  Model model = test::make_ball(2);
+  Mesh mesh = test::mesh_balls(model, {2}, true, {0}, levels);
+  return {std::move(model), std::move(mesh)};
+}
+
+ValidationReport check(const Sample& sample, bool with_model, double unit_scale = 1) {
+  Context context;
+  return validate(sample.mesh, with_model ? &sample.model : nullptr, unit_scale, context);
+}
+
+void expect_clean(const Sample& sample) {
+  for (const bool with_model : {false, true}) {
+    const ValidationReport report = check(sample, with_model);
+    EXPECT_TRUE(report.findings.empty()) << (with_model ? "with model\n" : "alone\n") << words(report);
+    EXPECT_TRUE(report.valid());
+  }
+}
+
+TEST(Validate, GoodMeshesPass) {
+  expect_clean(box());
+  expect_clean(cylinder());
+  expect_clean(cylinder(3));
+  expect_clean(ball(0));
+  expect_clean(ball());
+  Model boxes = test::make_boxes({1, 2, 0.5}, 3, 1);
+  Mesh mesh = test::mesh_boxes(boxes, {1, 2, 0.5}, 3, 1, 2);
+  expect_clean({std::move(boxes), std::move(mesh)});
+  Model shell = test::make_shell(3, 2);
+  mesh = test::mesh_balls(shell, {2, 3}, false, {0}, 3);
+  expect_clean({std::move(shell), std::move(mesh)});
+  Model nested = test::make_nested_balls(3, 1);
+  mesh = test::mesh_balls(nested, {1, 3}, true, {1, 0}, 2);
+  expect_clean({std::move(nested), std::move(mesh)});
+}
+
+TEST(Validate, VolumesAndQuality) {
+  const Sample sample = box();
+  const ValidationReport report = check(sample, true);
+  ASSERT_EQ(report.solid_volumes.size(), 1U);
+  EXPECT_NEAR(report.solid_volumes[0], 6, 1e-12);
+  std::size_t tets = 0;
+  for (const std::size_t n : report.quality.radius_ratio.bins) tets += n;
+  EXPECT_EQ(tets, sample.mesh.tets.size());
+  EXPECT_GT(report.quality.worst_dihedral, 0);
+  EXPECT_LE(report.quality.radius_ratio.largest, 1);
+  EXPECT_LE(report.quality.dihedral.smallest, report.quality.dihedral.mean);
+}
+
+TEST(Validate, OtherUnit) {
+  Sample sample = cylinder();
+  for (Point& p : sample.mesh.points) {
+    for (double& x : p) x /= 1000;
+  }
+  EXPECT_TRUE(check(sample, true, 0.001).valid());
+  EXPECT_FALSE(check(sample, true, 1).valid());
+}
+
+struct Mutation {
+  const char* check;
+  bool needs_model;
+  Severity severity;
+  std::function<Sample()> make;
+};
+
+template <class Change>
+std::function<Sample()> spoil(Sample (*base)(), Change change) {
+  return [base, change] {
+    Sample sample = base();
+    change(sample);
+    return sample;
+  };
+}
+
+Sample small_box() { return box(2); }
+Sample small_cylinder() { return cylinder(12); }
+Sample small_ball() { return ball(2); }
+Sample two_boxes() {
+  Model model = test::make_boxes({1, 1}, 1, 1);
+  Mesh mesh = test::mesh_boxes(model, {1, 1}, 1, 1, 2);
+  return {std::move(model), std::move(mesh)};
+}
+
+void move(Sample& s, std::size_t node, Vec3 by) {
+  s.mesh.points[node][0] += by.x;
+  s.mesh.points[node][1] += by.y;
+  s.mesh.points[node][2] += by.z;
+}
+
+/// First node that is in no boundary triangle.
+std::size_t interior_node(const Mesh& mesh) {
+  std::vector<bool> boundary(mesh.points.size(), false);
+  for (const auto& t : mesh.triangles) {
+    for (const std::uint32_t v : t) boundary[v] = true;
+  }
+  return static_cast<std::size_t>(std::find(boundary.begin(), boundary.end(), false) - boundary.begin());
+}
+
+void remove_triangle(Mesh& mesh, std::size_t i) {
+  mesh.triangles.erase(mesh.triangles.begin() + static_cast<std::ptrdiff_t>(i));
+  mesh.triangle_face.erase(mesh.triangle_face.begin() + static_cast<std::ptrdiff_t>(i));
+}
+
+void remove_tet(Mesh& mesh, std::size_t i) {
+  mesh.tets.erase(mesh.tets.begin() + static_cast<std::ptrdiff_t>(i));
+  mesh.tet_solid.erase(mesh.tet_solid.begin() + static_cast<std::ptrdiff_t>(i));
+}
+
+/// A second copy of all tets, moved; its nodes are new, its triangles labelled likewise.
+void add_copy(Mesh& mesh, double scale, Vec3 by) {
+  const auto shift = static_cast<std::uint32_t>(mesh.points.size());
+  const std::size_t tets = mesh.tets.size(), triangles = mesh.triangles.size();
+  for (std::uint32_t i = 0; i < shift; ++i) {
+    const Point p = mesh.points[i];
+    mesh.points.push_back({scale * p[0] + by.x, scale * p[1] + by.y, scale * p[2] + by.z});
+    mesh.nodes.push_back(mesh.nodes[i]);
+  }
+  for (std::size_t i = 0; i < tets; ++i) {
+    auto t = mesh.tets[i];
+    for (std::uint32_t& v : t) v += shift;
+    mesh.tets.push_back(t);
+    mesh.tet_solid.push_back(mesh.tet_solid[i]);
+  }
+  for (std::size_t i = 0; i < triangles; ++i) {
+    auto t = mesh.triangles[i];
+    for (std::uint32_t& v : t) v += shift;
+    mesh.triangles.push_back(t);
+    mesh.triangle_face.push_back(mesh.triangle_face[i]);
+  }
+}
+
+std::vector<Mutation> mutations() {
+  constexpr Severity error = Severity::error, warning = Severity::warning;
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  return {
+      {"no_tets", false, error, spoil(small_box, [](Sample& s) { s.mesh.tets.clear(), s.mesh.tet_solid.clear(); })},
+      {"not_finite", false, error, spoil(small_box, [=](Sample& s) { s.mesh.points[3][1] = nan; })},
+      {"bad_index", false, error, spoil(small_box, [](Sample& s) { s.mesh.tets[5][2] = 4000000000U; })},
+      {"bad_label", false, error, spoil(small_box, [](Sample& s) { s.mesh.triangle_face[0] = 77; })},
+      {"bad_arrays", false, error, spoil(small_box, [](Sample& s) { s.mesh.tet_solid.pop_back(); })},
+      {"repeated_vertex", false, error, spoil(small_box, [](Sample& s) { s.mesh.tets[1][0] = s.mesh.tets[1][1]; })},
+      {"negative_tet", false, error,
+       spoil(small_box, [](Sample& s) { std::swap(s.mesh.tets[1][0], s.mesh.tets[1][1]); })},
+      {"negative_tet", false, error,
+       spoil(small_box,
+             [](Sample& s) {
+               move(s, interior_node(s.mesh), {1.5, 0.3, 0.1});
+             })},
+      {"flat_tet", false, error,
+       spoil(small_box, [](Sample& s) { s.mesh.points[s.mesh.tets[0][0]] = s.mesh.points[s.mesh.tets[0][1]]; })},
+      {"duplicate_node", false, error,
+       spoil(small_box, [](Sample& s) { s.mesh.points[s.mesh.tets[0][0]] = s.mesh.points[s.mesh.tets[0][1]]; })},
+      {"unused_node", false, warning,
+       spoil(small_box,
+             [](Sample& s) {
+               s.mesh.points.push_back({9, 9, 9});
+             })},
+      {"facet_of_many_tets", false, error,
+       spoil(small_box,
+             [](Sample& s) {
+               s.mesh.tets.push_back(s.mesh.tets[0]);
+               s.mesh.tet_solid.push_back(0);
+             })},
+      {"tets_on_same_side", false, error,
+       spoil(small_box,
+             [](Sample& s) {
+               s.mesh.points.push_back({0.1, 0.2, 0.3});
+               auto t = s.mesh.tets[0];
+               t[0] = static_cast<std::uint32_t>(s.mesh.points.size() - 1);
+               s.mesh.tets = {s.mesh.tets[0], t};
+               s.mesh.tet_solid = {0, 0};
+             })},
+      {"triangle_not_a_facet", false, error, spoil(small_box, [](Sample& s) { remove_tet(s.mesh, 0); })},
+      {"unlabelled_boundary_facet", false, error, spoil(small_box, [](Sample& s) { remove_triangle(s.mesh, 4); })},
+      {"unlabelled_boundary_facet", false, error, spoil(small_box, [](Sample& s) { remove_tet(s.mesh, 0); })},
+      {"duplicate_triangle", false, error,
+       spoil(small_box,
+             [](Sample& s) {
+               s.mesh.triangles.push_back(s.mesh.triangles[4]);
+               s.mesh.triangle_face.push_back(s.mesh.triangle_face[4]);
+             })},
+      {"triangle_inside_a_region", false, warning,
+       spoil(small_box,
+             [](Sample& s) {
+               const std::uint32_t inner = static_cast<std::uint32_t>(interior_node(s.mesh));
+               for (const auto& t : s.mesh.tets) {
+                 if (std::find(t.begin(), t.end(), inner) == t.end()) continue;
+                 s.mesh.triangles.push_back({inner, t[0] == inner ? t[1] : t[0], t[3] == inner ? t[2] : t[3]});
+                 break;
+               }
+               s.mesh.triangle_face.push_back(0);
+             })},
+      {"face_sides_vary", false, warning,
+       spoil(small_box, [](Sample& s) { std::swap(s.mesh.triangles[0][0], s.mesh.triangles[0][1]); })},
+      {"wrong_solid_beside_face", true, error,
+       spoil(small_box, [](Sample& s) { std::swap(s.mesh.triangles[0][0], s.mesh.triangles[0][1]); })},
+      {"wrong_solid_beside_face", true, error,
+       spoil(two_boxes,
+             [](Sample& s) {
+               for (std::uint32_t& r : s.mesh.tet_solid) r = 1 - r;
+             })},
+      {"empty_solid", false, error,
+       spoil(two_boxes,
+             [](Sample& s) {
+               for (std::uint32_t& r : s.mesh.tet_solid) r = 0;
+             })},
+      {"boundary_intersection", false, error,
+       spoil(small_ball,
+             [](Sample& s) {
+               add_copy(s.mesh, 1, {3, 0.1, 0.2});
+             })},
+      {"boundary_intersection", false, error,
+       spoil(small_box,
+             [](Sample& s) {
+               add_copy(s.mesh, 1, {1, 1, 1});
+             })},
+      {"vertex_in_foreign_tet", false, error,
+       spoil(small_ball,
+             [](Sample& s) {
+               add_copy(s.mesh, 0.1, {0.3, 0, 0});
+             })},
+      {"vertex_in_foreign_tet", false, error,
+       spoil(small_box,
+             [](Sample& s) {
+               add_copy(s.mesh, 1, {0, 3, 0.1});
+             })},
+      {"more_pieces_than_solids", true, error,
+       spoil(small_ball,
+             [](Sample& s) {
+               add_copy(s.mesh, 1, {9, 0, 0});
+             })},
+      {"solid_in_pieces", true, warning,
+       spoil(small_ball,
+             [](Sample& s) {
+               add_copy(s.mesh, 1, {9, 0, 0});
+             })},
+      {"euler_characteristic", true, warning,
+       spoil(small_ball,
+             [](Sample& s) {
+               add_copy(s.mesh, 1, {9, 0, 0});
+             })},
+      {"vertex_off_face", true, error,
+       spoil(small_ball,
+             [](Sample& s) {
+               for (double& x : s.mesh.points[7]) x *= 1.001;
+             })},
+      {"vertex_off_face", true, error,
+       spoil(small_cylinder,
+             [](Sample& s) {
+               move(s, 0, {0, 0, -1e-3});
+             })},
+      {"vertex_off_edge", true, error,
+       spoil(small_box,
+             [](Sample& s) {
+               move(s, s.mesh.segments[0][0], {1e-3, 1e-3, 1e-3});
+             })},
+      {"corner_off_vertex", true, error,
+       spoil(small_box,
+             [](Sample& s) {
+               move(s, s.mesh.corner_nodes[0], {1e-3, 0, 0});
+             })},
+      {"fold", true, error,
+       spoil(small_box,
+             [](Sample& s) {
+               const Point middle{1, 1.5, 0};
+               const auto node = std::find(s.mesh.points.begin(), s.mesh.points.end(), middle) - s.mesh.points.begin();
+               move(s, static_cast<std::size_t>(node), {1.2, 0.2, 0});
+             })},
+      {"uncovered_face", true, error, spoil(small_ball, [](Sample& s) { s.model = test::make_shell(2, 1); })},
+      {"face_without_triangles", true, error, spoil(small_ball, [](Sample& s) { s.model = test::make_shell(2, 1); })},
+      {"volume", true, error, spoil(small_ball, [](Sample& s) { s.model = test::make_shell(2, 1.7); })},
+      {"label_not_in_cad", true, error, spoil(small_ball, [](Sample& s) { s.mesh.faces[0].cad_id = 12; })},
+      {"edge_without_segments", true, error,
+       spoil(small_cylinder, [](Sample& s) { s.mesh.segments.clear(), s.mesh.segment_edge.clear(); })},
+      {"edge_not_a_chain", true, error,
+       spoil(small_cylinder,
+             [](Sample& s) {
+               s.mesh.segments.erase(s.mesh.segments.begin() + 3);
+               s.mesh.segment_edge.erase(s.mesh.segment_edge.begin() + 3);
+             })},
+      {"segment_triangles", true, error,
+       spoil(small_box,
+             [](Sample& s) {
+               s.mesh.segments[0] = {0, static_cast<std::uint32_t>(s.mesh.points.size() - 1)};
+             })},
+      {"unfair_chord", true, error,
+       [] {
+         Sample s = cylinder(3);
+         for (const std::size_t i : {2U, 3U, 6U, 7U}) {
+           const double angle = (i % 2 == 0 ? 60 : 120) * std::numbers::pi / 180;
+           s.mesh.points[i] = {2 * std::cos(angle), 2 * std::sin(angle), s.mesh.points[i][2]};
+         }
+         return s;
+       }},
+      {"crowded_edge", false, warning,
+       spoil(small_box,
+             [](Sample& s) {
+               // Two tets of the box that share no more than an edge.
+               const auto shared = [](const auto& a, const auto& b) {
+                 return std::count_if(a.begin(), a.end(),
+                                      [&](auto v) { return std::find(b.begin(), b.end(), v) != b.end(); });
+               };
+               std::size_t other = 1;
+               while (shared(s.mesh.tets[0], s.mesh.tets[other]) != 2) ++other;
+               s.mesh.tets = {s.mesh.tets[0], s.mesh.tets[other]};
+               s.mesh.tet_solid = {0, 0};
+             })},
+  };
+}
+
+TEST(Validate, EveryMutationIsNamed) {
+  for (const Mutation& mutation : mutations()) {
+    const Sample sample = mutation.make();
+    const ValidationReport report = check(sample, mutation.needs_model);
+    const Finding* finding = find(report, mutation.check);
+    EXPECT_NE(finding, nullptr) << mutation.check << " not found; found:\n" << words(report);
+    if (finding == nullptr) continue;
+    EXPECT_EQ(finding->severity, mutation.severity) << mutation.check;
+    EXPECT_GT(finding->count, 0U);
+    EXPECT_FALSE(finding->examples.empty());
+    EXPECT_LE(finding->examples.size(), 5U);
+    if (mutation.severity == Severity::error) {
+      EXPECT_FALSE(report.valid());
+    }
+  }
+}
+
+TEST(Validate, SameFindingsForAnyNumberOfThreads) {
+  Sample sample = ball(3);
+  add_copy(sample.mesh, 1, {1, 0.1, 0.2});
+  Context one, two;
+  one.threads = 1;
+  two.threads = 2;
+  EXPECT_EQ(words(validate(sample.mesh, &sample.model, 1, one)), words(validate(sample.mesh, &sample.model, 1, two)));
+}
+
+TEST(Validate, CancelledIsNotValid) {
+  const Sample sample = box();
+  Context context;
+  context.cancel();
+  EXPECT_FALSE(validate(sample.mesh, &sample.model, 1, context).valid());
+}
+
+TEST(Validate, EmptyMesh) {
+  Context context;
+  EXPECT_FALSE(validate(Mesh{}, nullptr, 1, context).valid());
+}
+
+}  // namespace
+}  // namespace curvetet
