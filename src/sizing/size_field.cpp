@@ -15,7 +15,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <span>
 #include <tuple>
 
 namespace curvetet {
@@ -138,11 +137,7 @@ struct SizeField::Tree {
 
 namespace {
 
-/// The sources that matter: below the largest size, each place once.
-std::vector<Cone> cones_of(std::span<const SizeSource> sources, double largest) {
-  std::vector<Cone> cones;
-  for (const SizeSource& source : sources)
-    if (source.size < largest) cones.push_back({source.where, source.size});
+std::vector<Cone> distinct(std::vector<Cone> cones) {
   std::sort(cones.begin(), cones.end(), before);
   const auto same = [](const Cone& a, const Cone& b) { return a.size == b.size && a.where == b.where; };
   cones.erase(std::unique(cones.begin(), cones.end(), same), cones.end());
@@ -158,11 +153,15 @@ SizeField::SizeField(std::vector<SizeSource> sources, const SizingOptions& optio
 }
 
 void SizeField::add(const std::vector<SizeSource>& more) {
+  std::vector<Cone> cones;
+  if (tree_) cones = tree_->cones;
   for (SizeSource source : more) {
     if (is_derived(source.reason)) source.size = std::max(source.size, options_.min_size);
-    if (source.size > 0 && finite(source.where)) sources_.push_back(source);
+    if (!(source.size > 0) || !finite(source.where)) continue;
+    sources_.push_back(source);
+    if (source.size < options_.size) cones.push_back({source.where, source.size});
   }
-  const Tree full(cones_of(sources_, options_.size));
+  const Tree full(distinct(std::move(cones)));
   std::vector<Cone> kept;
   for (const Cone& cone : full.cones)
     if (full.lowest(cone.where, options_.grading, options_.size) >= cone.size) kept.push_back(cone);
@@ -191,10 +190,11 @@ double SizeField::at(Vec3 p) const {
   return size;
 }
 
-double SizeField::at_face(FaceId face, Vec3 p) const { return std::min(at(p), limit_of(face_limit_, face.value())); }
+double SizeField::face_limit(FaceId face) const { return limit_of(face_limit_, face.value()); }
+double SizeField::edge_limit(EdgeId edge) const { return limit_of(edge_limit_, edge.value()); }
 
-double SizeField::at_edge(EdgeId edge, Vec3 p) const { return std::min(at(p), limit_of(edge_limit_, edge.value())); }
-
+double SizeField::at_face(FaceId face, Vec3 p) const { return std::min(at(p), face_limit(face)); }
+double SizeField::at_edge(EdgeId edge, Vec3 p) const { return std::min(at(p), edge_limit(edge)); }
 double SizeField::at_solid(SolidId solid, Vec3 p) const {
   return std::min(at(p), limit_of(options_.solid_size, solid.value()));
 }

@@ -62,6 +62,9 @@ class SizeField {
   double at_face(FaceId face, Vec3 p) const;
   double at_edge(EdgeId edge, Vec3 p) const;
   double at_solid(SolidId solid, Vec3 p) const;
+  /// The least size asked for the entity, or for one that it bounds; infinite if none was.
+  double face_limit(FaceId face) const;
+  double edge_limit(EdgeId edge) const;
   /// Lets the sizes asked for a solid bound its faces, and those of a face bound its edges.
   void spread_limits(const Model& model);
   double largest() const { return options_.size; }
