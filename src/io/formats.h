@@ -26,8 +26,8 @@ Result<MeshFormat> format_named(const std::string& name);
 /// Writes atomically. Entities keep their cad ids as tags, and every solid, face and edge has a physical group with the
 /// CAD's name.
 Status write_mesh(const Mesh& mesh, const std::string& path, const WriteOptions& options);
-/// Reads .msh 4.1 and 2.2 (ASCII and binary), .vtu (as we write it) and Medit .mesh. Untrusted input: typed errors,
-/// never a crash.
+/// Reads .msh 4.1 and 2.2 (text and binary), .vtu (as we write it) and Medit .mesh. Untrusted input: typed errors, never a
+/// crash. The unit is empty if the file does not say it, as files of other programs do not.
 Result<Mesh> read_mesh(const std::string& path);
 
 /// Writes text whole or not at all (report, pictures).

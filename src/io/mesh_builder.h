@@ -16,7 +16,7 @@ class MeshBuilder {
  public:
   static constexpr std::uint8_t kUnknown = 255;  ///< dimension of a node that the file does not classify
 
-  MeshBuilder() : entities_(mesh_) {}
+  MeshBuilder() : entities_(mesh_) { mesh_.unit.clear(); }
   MeshBuilder(const MeshBuilder&) = delete;
   MeshBuilder& operator=(const MeshBuilder&) = delete;
 
