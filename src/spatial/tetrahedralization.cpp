@@ -167,6 +167,14 @@ std::vector<std::array<VertexId, 2>> Tetrahedralization::kept_segments() const {
   return segments;
 }
 
+std::size_t Tetrahedralization::bytes() const {
+  const std::size_t kept_node = sizeof(std::uint64_t) + sizeof(void*);
+  return complex_.bytes() + vertex_tet_.raw().capacity() * sizeof(TetId) +
+         kept_degree_.raw().capacity() * sizeof(std::uint32_t) + kept_.size() * kept_node +
+         kept_.bucket_count() * sizeof(void*) + star_.capacity() * sizeof(TetId) + marks_.bytes() +
+         vertex_marks_.bytes();
+}
+
 void Tetrahedralization::touch(TetId t) {
   for (const VertexId v : complex_.vertices(t)) {
     if (v != kInfinite) vertex_tet_[v] = t;

@@ -99,6 +99,9 @@ class Tetrahedralization {
   /// All of them, smaller id first, sorted.
   std::vector<std::array<VertexId, 2>> kept_segments() const;
 
+  /// Of all arrays, scratch included.
+  std::size_t bytes() const;
+
   /// To be called by code that changes the complex by flips: keeps vertex_tet_ right for the vertices of t.
   void touch(TetId t);
 
