@@ -43,6 +43,7 @@ int main(int argc, char** argv) {
   const std::string folder = argc > 1 ? argv[1] : ".";
   curvetet::LoadOptions options;
   options.isolate = argc > 2 && std::string(argv[2]) == "--isolate";
+  options.helper = "/proc/self/exe";
   for (std::string file; std::getline(std::cin, file);) {
     curvetet::Context context;
     const auto start = std::chrono::steady_clock::now();

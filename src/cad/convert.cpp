@@ -22,12 +22,14 @@
 #include "cad/guard.h"
 #include "cad/loops.h"
 #include "cad/occt_geometry.h"
+#include "geometry/bounds.h"
 
 namespace curvetet {
 namespace {
 
 constexpr double kInfinite = 1e50;
-constexpr int kFacesForTightBox = 2000;
+/// The kernel's box may be larger than the body by this factor before the frame is made anew from the body itself.
+constexpr double kLooseBox = 3;
 
 /// A face as one shell of a solid uses it.
 struct FaceUse {
@@ -55,14 +57,16 @@ class Converter {
   Result<Model> run() {
     if (faces_.IsEmpty()) return Error{ErrorCode::no_faces, source_ + " holds no faces"};
     if (solids_.IsEmpty()) return Error{ErrorCode::no_solid, source_ + " holds no solid"};
-    model_.unit = body_.unit;
-    model_.healing = body_.notes;
     collect_shells();
     mark_used();
-    if (const auto error = make_frame()) return *error;
-    make_vertices();
-    make_edges();
-    make_faces();
+    if (const auto error = find_box()) return *error;
+    make_parts(Frame::of(loose_box_));
+    if (loose_box_.diagonal() > kLooseBox * model_.frame.length_to_cad(model_.box.diagonal())) {
+      Box3 box;
+      box.extend(model_.frame.to_cad(model_.box.low));
+      box.extend(model_.frame.to_cad(model_.box.high));
+      if (box.diagonal() > 0) make_parts(Frame::of(box));
+    }
     if (const auto error = make_solids()) return *error;
     list_faces_of_edges();
     return std::move(model_);
@@ -104,10 +108,9 @@ class Converter {
         for (const FaceUse& use : shell.faces) face_used_[static_cast<std::size_t>(use.face)] = 1;
       }
     }
-    std::size_t ignored = 0;
     for (int f = 1; f <= faces_.Extent(); ++f) {
       if (face_used_[static_cast<std::size_t>(f)] == 0) {
-        ++ignored;
+        ++ignored_;
         continue;
       }
       const TopTools_IndexedMapOfShape edges = sub_shapes(faces_(f), TopAbs_EDGE);
@@ -117,10 +120,22 @@ class Converter {
         vertex_used_[static_cast<std::size_t>(vertices_.FindIndex(vertices(v)))] = 1;
       }
     }
-    if (ignored > 0) note("file", std::to_string(ignored) + " faces that belong to no solid are left out");
   }
 
-  std::optional<Error> make_frame() {
+  void make_parts(const Frame& frame) {
+    model_ = Model();
+    next_vertex_label_ = next_edge_label_ = 0;
+    model_.frame = frame;
+    model_.unit = body_.unit;
+    model_.healing = body_.notes;
+    if (ignored_ > 0) note("file", std::to_string(ignored_) + " faces that belong to no solid are left out");
+    make_vertices();
+    make_edges();
+    make_faces();
+    model_.box = sampled_box(model_);
+  }
+
+  std::optional<Error> find_box() {
     Bnd_Box box;
     for (int s = 1; s <= solids_.Extent(); ++s) BRepBndLib::Add(solids_(s), box, false);
     if (box.IsVoid()) return Error{ErrorCode::zero_size, source_ + " has no extent"};
@@ -144,15 +159,8 @@ class Converter {
     if (!finite(limits.low) || !finite(limits.high)) {
       return Error{ErrorCode::not_finite, source_ + " has coordinates that are not finite numbers"};
     }
-    if (faces_.Extent() <= kFacesForTightBox) {
-      Bnd_Box tight;
-      for (int s = 1; s <= solids_.Extent(); ++s) BRepBndLib::AddOptimal(solids_(s), tight, false, false);
-      if (!tight.IsVoid() && !tight.IsOpen()) limits = limit(tight);
-    }
     if (!(limits.diagonal() > 0)) return Error{ErrorCode::zero_size, source_ + " has no extent"};
-    model_.frame = Frame::of(limits);
-    model_.box.extend(model_.frame.to_working(limits.low));
-    model_.box.extend(model_.frame.to_working(limits.high));
+    loose_box_ = limits;
     return std::nullopt;
   }
 
@@ -161,7 +169,7 @@ class Converter {
   double working(double length) const { return model_.frame.length_to_working(length); }
 
   void make_vertices() {
-    vertex_id_.resize(vertex_used_.size());
+    vertex_id_.assign(vertex_used_.size(), CadVertexId());
     for (int v = 1; v <= vertices_.Extent(); ++v) {
       const std::size_t index = static_cast<std::size_t>(v);
       next_vertex_label_ = std::max(next_vertex_label_, body_.vertices[index - 1].cad_id);
@@ -186,7 +194,7 @@ class Converter {
   }
 
   void make_edges() {
-    edge_id_.resize(edge_used_.size());
+    edge_id_.assign(edge_used_.size(), EdgeId());
     for (int e = 1; e <= edges_.Extent(); ++e) {
       const std::size_t index = static_cast<std::size_t>(e);
       next_edge_label_ = std::max(next_edge_label_, body_.edges[index - 1].cad_id);
@@ -256,7 +264,7 @@ class Converter {
   // --- faces ---
 
   void make_faces() {
-    face_id_.resize(face_used_.size());
+    face_id_.assign(face_used_.size(), FaceId());
     LoopContext context;
     context.model = &model_;
     context.edge = [this](const TopoDS_Edge& edge) {
@@ -417,6 +425,8 @@ class Converter {
   std::vector<EdgeId> edge_id_;
   std::vector<CadVertexId> vertex_id_;
   std::uint32_t next_vertex_label_ = 0, next_edge_label_ = 0;
+  std::size_t ignored_ = 0;
+  Box3 loose_box_;
   Model model_;
 };
 

@@ -280,7 +280,9 @@ Result<Model> heal_and_convert(CadBody& body, const std::string& source) {
     if (best.bad >= 1000) return fault_error(best, source);
     body = std::move(best.body);
     for (const ModelFault& fault : best.faults) {
-      best.model.value().healing.push_back({fault.entity, fault.what + " (left as it is)"});
+      const HealingNote note{fault.entity, fault.what + " (left as it is)"};
+      body.notes.push_back(note);
+      best.model.value().healing.push_back(note);
     }
     return std::move(best.model);
   });

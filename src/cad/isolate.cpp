@@ -1,0 +1,216 @@
+// The helper is spawned (not forked: a fork of a process with threads may not call the CAD kernel), with its output
+// thrown away, and polled, so that a cancel takes effect within milliseconds. It limits its own memory and processor
+// time, since posix_spawn cannot. A variable in its environment keeps a program that was started by mistake from
+// starting helpers too.
+#include "cad/isolate.h"
+
+#include <fcntl.h>
+#include <signal.h>
+#include <spawn.h>
+#include <sys/resource.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <chrono>
+#include <cmath>
+#include <cstdlib>
+#include <cstring>
+#include <filesystem>
+#include <thread>
+#include <vector>
+
+#ifdef __linux__
+#include <sys/prctl.h>
+#endif
+
+#include "cad/guard.h"
+#include "cad/heal.h"
+#include "cad/read.h"
+#include "cad/transfer.h"
+
+extern char** environ;
+
+namespace curvetet {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+constexpr const char* kHelperVariable = "CURVETET_CAD_HELPER";
+constexpr const char* kHelperFlag = "--cad-helper";
+
+/// A folder of our own that vanishes with its contents.
+class TemporaryFolder {
+ public:
+  TemporaryFolder() {
+    std::error_code code;
+    std::string pattern = (std::filesystem::temp_directory_path(code) / "curvetet-XXXXXX").string();
+    if (!code && mkdtemp(pattern.data()) != nullptr) path_ = pattern;
+  }
+  ~TemporaryFolder() {
+    std::error_code code;
+    if (!path_.empty()) std::filesystem::remove_all(path_, code);
+  }
+  TemporaryFolder(const TemporaryFolder&) = delete;
+  TemporaryFolder& operator=(const TemporaryFolder&) = delete;
+  const std::string& path() const { return path_; }
+
+ private:
+  std::string path_;
+};
+
+/// A child process; killed when it goes out of scope unfinished.
+class Child {
+ public:
+  Child(const std::string& program, std::vector<std::string> arguments) {
+    std::vector<char*> argv;
+    for (std::string& argument : arguments) argv.push_back(argument.data());
+    argv.push_back(nullptr);
+    std::string marker = std::string(kHelperVariable) + "=1";
+    std::vector<char*> environment;
+    for (char** variable = environ; variable != nullptr && *variable != nullptr; ++variable) {
+      environment.push_back(*variable);
+    }
+    environment.push_back(marker.data());
+    environment.push_back(nullptr);
+    posix_spawn_file_actions_t actions;
+    posix_spawn_file_actions_init(&actions);
+    posix_spawn_file_actions_addopen(&actions, STDIN_FILENO, "/dev/null", O_RDONLY, 0);
+    posix_spawn_file_actions_addopen(&actions, STDOUT_FILENO, "/dev/null", O_WRONLY, 0);
+    posix_spawn_file_actions_addopen(&actions, STDERR_FILENO, "/dev/null", O_WRONLY, 0);
+    started_ = posix_spawn(&id_, program.c_str(), &actions, nullptr, argv.data(), environment.data()) == 0;
+    posix_spawn_file_actions_destroy(&actions);
+  }
+  ~Child() {
+    if (started_ && !finished_) {
+      kill(id_, SIGKILL);
+      wait(0);
+    }
+  }
+  Child(const Child&) = delete;
+  Child& operator=(const Child&) = delete;
+
+  bool started() const { return started_; }
+  /// True once it has ended.
+  bool poll() { return finished_ || wait(WNOHANG); }
+  /// The signal that ended it, or 0.
+  int signal_number() const { return WIFSIGNALED(status_) ? WTERMSIG(status_) : 0; }
+
+ private:
+  bool wait(int flags) {
+    const pid_t ended = waitpid(id_, &status_, flags);
+    // Without a child to wait for (a host that ignores SIGCHLD) its files tell how it ended.
+    if (ended == id_ || (ended < 0 && errno == ECHILD)) finished_ = true;
+    return finished_;
+  }
+
+  pid_t id_ = 0;
+  int status_ = 0;
+  bool started_ = false, finished_ = false;
+};
+
+std::string seconds_text(double seconds) { return std::to_string(static_cast<long>(std::llround(seconds))) + " s"; }
+
+Error crashed(const std::string& path, int signal_number) {
+  std::string how = "ended before it was done";
+  if (signal_number != 0) how = "crashed (" + std::string(strsignal(signal_number)) + ")";
+  return Error{ErrorCode::reader_crashed,
+               "the CAD kernel " + how + " while reading " + path,
+               {},
+               {},
+               "export the body again, from another CAD system or as another format"};
+}
+
+Error timed_out(const std::string& path, double seconds) {
+  return Error{ErrorCode::time_limit,
+               "reading " + path + " took longer than " + seconds_text(seconds),
+               {},
+               {},
+               "give it more time, or simplify the body"};
+}
+
+void limit(int resource, rlim_t value) {
+  rlimit limits{};
+  if (getrlimit(static_cast<__rlimit_resource_t>(resource), &limits) != 0) return;
+  limits.rlim_cur = limits.rlim_max == RLIM_INFINITY ? value : std::min(value, limits.rlim_max);
+  setrlimit(static_cast<__rlimit_resource_t>(resource), &limits);
+}
+
+void limit_this_process(std::size_t memory, double seconds) {
+  limit(RLIMIT_CORE, 0);
+  if (memory > 0) limit(RLIMIT_AS, static_cast<rlim_t>(memory));
+  if (seconds > 0) limit(RLIMIT_CPU, static_cast<rlim_t>(std::ceil(seconds)) + 1);
+#ifdef __linux__
+  prctl(PR_SET_PDEATHSIG, SIGKILL);
+#endif
+}
+
+}  // namespace
+
+std::optional<std::string> find_helper(const LoadOptions& options) {
+  if (!options.helper.empty()) return options.helper;
+  std::error_code code;
+  const std::filesystem::path self = std::filesystem::read_symlink("/proc/self/exe", code);
+  if (code) return std::nullopt;
+  if (self.filename() == "curvetet") return self.string();
+  const std::filesystem::path beside = self.parent_path() / "curvetet";
+  if (std::filesystem::is_regular_file(beside, code)) return beside.string();
+  return std::nullopt;
+}
+
+Result<CadBody> read_isolated(const std::string& path, const std::string& helper, const LoadOptions& options,
+                              Context& context) {
+  if (std::getenv(kHelperVariable) != nullptr) {
+    return Error{ErrorCode::bad_option,
+                 "a helper process was asked to start a helper: this program does not serve as one",
+                 {},
+                 {},
+                 "set the helper to the curvetet program, or read without isolation"};
+  }
+  const TemporaryFolder folder;
+  if (folder.path().empty()) return Error{ErrorCode::output_unwritable, "cannot make a temporary folder"};
+  const std::string out_path = folder.path() + "/shape.bin";
+  const double allowed = options.isolate_time_limit;
+  Child child(helper, {helper, kHelperFlag, path, out_path, options.input_unit,
+                       std::to_string(options.isolate_memory_limit), std::to_string(allowed)});
+  if (!child.started()) return Error{ErrorCode::bad_option, "cannot start the helper program " + helper};
+  const auto start = Clock::now();
+  auto pause = std::chrono::milliseconds(1);
+  while (!child.poll()) {
+    if (context.should_stop()) return context.stop_error("load");
+    if (allowed > 0 && std::chrono::duration<double>(Clock::now() - start).count() > allowed) {
+      return timed_out(path, allowed);
+    }
+    std::this_thread::sleep_for(pause);
+    pause = std::min(2 * pause, std::chrono::milliseconds(16));
+  }
+  if (context.should_stop()) return context.stop_error("load");
+  if (child.signal_number() == SIGXCPU) return timed_out(path, allowed);
+  if (!transfer_announced(out_path) && child.signal_number() == 0) {
+    return Error{ErrorCode::bad_option,
+                 helper + " does not serve as helper of this version",
+                 {},
+                 {},
+                 "set the helper to the curvetet program, or read without isolation"};
+  }
+  if (child.signal_number() != 0) return crashed(path, child.signal_number());
+  Result<CadBody> body = read_transfer(out_path);
+  if (!body && body.error().code == ErrorCode::reader_crashed) return crashed(path, 0);
+  return body;
+}
+
+int run_cad_helper(int argc, char** argv) {
+  constexpr int kUsage = 2, kUnwritable = 3;
+  if (argc != 7 || std::string(argv[1]) != kHelperFlag) return kUsage;
+  const std::string path = argv[2], out_path = argv[3], unit = argv[4];
+  limit_this_process(std::strtoull(argv[5], nullptr, 10), std::strtod(argv[6], nullptr));
+  if (!announce_transfer(out_path)) return kUnwritable;
+  Result<CadBody> body = read_body(path, unit);
+  if (!body) return write_transfer(body.error(), out_path) ? 0 : kUnwritable;
+  const Result<Model> model = heal_and_convert(body.value(), path);
+  const bool written = model ? write_transfer(body.value(), out_path) : write_transfer(model.error(), out_path);
+  return written ? 0 : kUnwritable;
+}
+
+}  // namespace curvetet

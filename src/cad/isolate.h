@@ -1,0 +1,22 @@
+// Reading and healing in a process of its own. Inside cad only.
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "base/context.h"
+#include "cad/body.h"
+#include "cad/load.h"
+
+namespace curvetet {
+
+/// The program that can serve as helper: the one asked for, this executable if it is curvetet, or the curvetet beside
+/// it.
+std::optional<std::string> find_helper(const LoadOptions& options);
+
+/// Reads and heals `path` in a helper process, which is killed when its time is over or the context says stop. Errors:
+/// the helper's own, reader_crashed, time_limit, cancelled, bad_option (the program is no helper).
+Result<CadBody> read_isolated(const std::string& path, const std::string& helper, const LoadOptions& options,
+                              Context& context);
+
+}  // namespace curvetet
