@@ -78,8 +78,10 @@ class FaceMesh {
  public:
   Chart chart;
 
-  /// Constrained triangulation of the domain the loops bound (exact; interior found by winding). On faults nothing is
-  /// built and all of them are returned.
+  /// Constrained Delaunay triangulation of the domain the loops bound (exact; interior found by winding). On faults
+  /// nothing is built, the former mesh stays, and all of them are returned. Loops may touch at a common vertex; two
+  /// segments over the same nodes in opposite directions are the two sides of a slit.
+  /// REQUIRED: uses are not negative; chart points lie within (-1,1)^2, on the grid.
   std::vector<LoopFault> build(const FaceInput& input);
 
   const FaceNode& node(NodeId n) const { return nodes_[n]; }
@@ -92,8 +94,9 @@ class FaceMesh {
   std::vector<NodeId> nodes_of(VertexId v) const;
   /// A triangle at a node; empty if the node is in none.
   TriangleId triangle_at(NodeId n) const;
-  /// All triangles around a node.
+  /// All triangles around a node, counter-clockwise from the boundary if there is one (pinched nodes: by id).
   void star(NodeId n, std::vector<TriangleId>& out) const;
+  /// The edge, from the triangle that sees it as (a,b) if there is one, else from the other.
   std::optional<FaceEdge> find_edge(NodeId a, NodeId b) const;
 
   /// The triangle that contains q (walk from the hint, then a scan); empty if outside.
@@ -112,19 +115,25 @@ class FaceMesh {
 
   /// Would inserting at q be legal? `triangle` contains q. Nothing is changed.
   PlanarRefusal judge_insert(Vec2 q, TriangleId triangle) const;
-  /// Inserts an interior node and restores the criterion by flips. `changed`: every triangle that was touched (alive
-  /// ones).
+  /// Inserts an interior node and restores the criterion by flips of the edges opposite it: each adds an edge at the
+  /// node, so this ends for any criterion. `changed` becomes the triangles touched: those around the node. An invalid
+  /// id, and nothing changed, if judge_insert refuses.
   NodeId insert(VertexId vertex, Vec2 q, TriangleId triangle, const FlipWanted& wanted,
                 std::vector<TriangleId>& changed);
 
   /// Splits the constrained edge at a node on its arc (which is usually not on the chord). `invariant` if the region
-  /// between chord and the two new chords holds another node or edge, then nothing is changed.
+  /// between chord and the two new chords holds another node or edge, then nothing is changed. All exact, on either
+  /// side of the chord; an edge with the domain on both sides (whose triangles may carry different uses) is split once,
+  /// for both. `outside`: no constrained edge, or q beyond the chart.
   PlanarRefusal judge_split(FaceEdge edge, Vec2 q) const;
+  /// As judged, then restores the criterion; `changed` becomes every triangle touched (alive ones). An invalid id, and
+  /// nothing changed, if judge_split refuses.
   NodeId split(FaceEdge edge, VertexId vertex, Vec2 q, const FlipWanted& wanted, std::vector<TriangleId>& changed);
 
   /// Flips one unconstrained edge if the result turns left (exactly).
   bool flip(FaceEdge edge);
-  /// Lawson's flips from the given triangles until none is wanted; bounded, deterministic.
+  /// Lawson's flips from the given triangles until none is wanted; at most 64 and 32 per edge given, for a criterion
+  /// need not be transitive. `changed` becomes the triangles touched.
   void restore(std::span<const TriangleId> from, const FlipWanted& wanted, std::vector<TriangleId>& changed);
 
   /// Removes a node without constrained edges and fills its star without flips, then restores the criterion if one is

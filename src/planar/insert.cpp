@@ -30,9 +30,9 @@ PlanarRefusal FaceMesh::judge_insert(Vec2 q, TriangleId triangle) const {
 
 NodeId FaceMesh::insert(VertexId vertex, Vec2 q, TriangleId triangle, const FlipWanted& wanted,
                         std::vector<TriangleId>& changed) {
-  CURVETET_CHECK(judge_insert(q, triangle) == PlanarRefusal::none);
-  const NodeId n = add_node(vertex, q);
   changed.clear();
+  if (judge_insert(q, triangle) != PlanarRefusal::none) return NodeId();
+  const NodeId n = add_node(vertex, q);
   place(n, triangle, changed);
   if (wanted) flip_star(n, changed, wanted);
   return n;

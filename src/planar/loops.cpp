@@ -54,7 +54,7 @@ class Assembler {
     const std::size_t before = graph_.faults.size();
     for (std::size_t c = 0; c < loop.chains.size(); ++c) {
       const ChainInput& chain = loop.chains[c];
-      if (chain.vertices.size() < 2 || chain.vertices.size() != chain.q.size()) {
+      if (chain.use < 0 || chain.vertices.size() < 2 || chain.vertices.size() != chain.q.size()) {
         fault(chain.use, 0, "malformed chain");
         continue;
       }

@@ -35,6 +35,7 @@ bool FaceMesh::remove_node(NodeId n) {
 // The link of the node is a star-shaped polygon; it has an ear that turns left and holds no other link node (Meisters,
 // "Polygons have ears", 1975). The least ear in the order of the link is cut off until a triangle is left.
 bool FaceMesh::remove_node(NodeId n, const FlipWanted& wanted, std::vector<TriangleId>& changed) {
+  changed.clear();
   if (n.value() >= nodes_.size() || !node_triangle_[n].valid()) return false;
   std::vector<TriangleId> cavity;
   star(n, cavity);
@@ -67,7 +68,6 @@ bool FaceMesh::remove_node(NodeId n, const FlipWanted& wanted, std::vector<Trian
   node_triangle_[n] = TriangleId();
   std::vector<TriangleId> made;
   replace_cavity(cavity, fill, made);
-  changed.clear();
   if (wanted) restore(made, wanted, changed);
   changed.insert(changed.end(), made.begin(), made.end());
   std::sort(changed.begin(), changed.end());

@@ -123,7 +123,8 @@ PlanarRefusal FaceMesh::judge_split(FaceEdge edge, Vec2 q) const { return plan_s
 NodeId FaceMesh::split(FaceEdge edge, VertexId vertex, Vec2 q, const FlipWanted& wanted,
                        std::vector<TriangleId>& changed) {
   const SplitPlan plan = plan_split(edge, q);
-  CURVETET_CHECK(plan.refusal == PlanarRefusal::none);
+  changed.clear();
+  if (plan.refusal != PlanarRefusal::none) return NodeId();
   const NodeId n = add_node(vertex, q);
   const auto [a, b] = ends(plan.edge);
   const bool boundary = on_boundary(plan.edge);
