@@ -8,6 +8,7 @@
 #include <cmath>
 #include <limits>
 #include <memory>
+#include <numbers>
 
 #include "boundary/boundary_mesh.h"
 
@@ -22,6 +23,11 @@ constexpr double kFlipMargin = 1e-6;
 constexpr int kNewtonSteps = 8;
 /// Distances to the three corners agree to this share of the radius.
 constexpr double kBallTolerance = 0.01;
+
+/// Arc over chord from which an edge wraps around: that of half a circle.
+constexpr double kWrap = std::numbers::pi / 2;
+/// Working length below which an arc is a point.
+constexpr double kNoLength = 1e-9;
 
 double cotangent(Vec3 apex, Vec3 a, Vec3 b) {
   const Vec3 x = a - apex, y = b - apex;
@@ -73,7 +79,23 @@ double alignment(const Corner& a, const Corner& b, const Corner& c) {
   return lengths > 0 ? dot(normal, mean) / lengths : 1;
 }
 
+Corner make_corner(const FaceNode& node, Vec3 position, const SurfaceFirst& at, const Chart& chart) {
+  return {node.vertex, node.q, position, unit_normal(at), (1 / chart.scale_u) * at.du, (1 / chart.scale_v) * at.dv};
+}
+
+double arc_estimate(const Corner& a, const Corner& b) {
+  const Vec2 d = b.q - a.q;
+  return std::min(norm(d.x * a.dx + d.y * a.dy), norm(d.x * b.dx + d.y * b.dy));
+}
+
+bool wraps(const Corner& a, const Corner& b) {
+  return arc_estimate(a, b) > kWrap * distance(a.position, b.position) + kNoLength;
+}
+
 bool flip_improves(const Corner& a, const Corner& b, const Corner& c, const Corner& d) {
+  const bool wraps_then = wraps(c, d), wraps_now = wraps(a, b);
+  if (wraps_then && wraps_now) return arc_estimate(c, d) < (1 - kFlipMargin) * arc_estimate(a, b);
+  if (wraps_then != wraps_now) return wraps_now;
   if (c.vertex == d.vertex) return false;
   const int degenerate_now = count_degenerate(a, b, c, b, a, d);
   const int degenerate_then = count_degenerate(a, d, c, d, b, c);
@@ -140,24 +162,20 @@ Vec3 unit_normal(const SurfaceFirst& at) {
 }
 
 FaceMesh::FlipWanted spatial_criterion(const FaceMesh& mesh, const VertexStore& vertices, const ModelFace& face) {
-  struct Normals {
-    std::vector<Vec3> value;
-    std::vector<bool> known;
-  };
-  const auto normals = std::make_shared<Normals>();
-  const auto corner = [&mesh, &vertices, &face, normals](NodeId n) {
-    if (n.value() >= normals->known.size()) {
-      normals->value.resize(mesh.node_count());
-      normals->known.resize(mesh.node_count(), false);
-    }
+  const auto known = std::make_shared<std::vector<std::optional<Corner>>>();
+  const auto corner = [&mesh, &vertices, &face, known](NodeId n) -> const Corner& {
+    if (n.value() >= known->size()) known->resize(std::max(mesh.node_count(), std::size_t{n.value()} + 1));
+    std::optional<Corner>& slot = (*known)[n.value()];
     const FaceNode& node = mesh.node(n);
-    if (!normals->known[n.value()]) {
-      normals->value[n.value()] = face.surface->normal(mesh.chart.to_uv(node.q));
-      normals->known[n.value()] = true;
+    // A rebuilt mesh numbers its nodes anew; a node that does not match is looked up again.
+    if (!slot || slot->vertex != node.vertex || !(slot->q == node.q)) {
+      const SurfaceFirst at = face.surface->first(mesh.chart.to_uv(node.q));
+      slot = make_corner(node, vertices.position(node.vertex), at, mesh.chart);
     }
-    return Corner{node.vertex, vertices.position(node.vertex), normals->value[n.value()]};
+    return *slot;
   };
   return [corner](NodeId a, NodeId b, NodeId c, NodeId d) {
+    corner(NodeId(std::max({a.value(), b.value(), c.value(), d.value()})));  // no resizing below: references stay good
     return flip_improves(corner(a), corner(b), corner(c), corner(d));
   };
 }

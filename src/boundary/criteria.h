@@ -8,15 +8,19 @@
 #include "base/ids.h"
 #include "base/vec.h"
 #include "geometry/surface.h"
-#include "planar/chart.h"
+#include "planar/face_mesh.h"
 
 namespace curvetet {
 
-/// A corner of a triangle of t_3d: its vertex, position and the unit normal du x dv there (zero where there is none).
+/// A corner of a triangle of t_3d: its vertex and chart point, and the surface there.
 struct Corner {
   VertexId vertex;
-  Vec3 position, normal;
+  Vec2 q;
+  Vec3 position;
+  Vec3 normal;  ///< unit du x dv; zero where the derivatives collapse (at a pole the limit depends on the direction)
+  Vec3 dx, dy;  ///< derivatives in the chart
 };
+Corner make_corner(const FaceNode& node, Vec3 position, const SurfaceFirst& at, const Chart& chart);
 
 /// True when two corners are the same vertex: the triangle is degenerate in space, though valid in the chart.
 bool degenerate(const Corner& a, const Corner& b, const Corner& c);
@@ -25,9 +29,14 @@ bool degenerate(const Corner& a, const Corner& b, const Corner& c);
 /// undefined.
 double alignment(const Corner& a, const Corner& b, const Corner& c);
 
-/// Whether triangles (a,b,c) and (b,a,d) should become (a,d,c) and (d,b,c). In order: fewer degenerate triangles, fewer
-/// triangles that oppose the surface's normal, then Delaunay in space (angles at c and d exceed two right ones, with a
-/// margin).
+/// Length of the surface's curve over the chart segment ab, estimated from below by the derivatives at its ends.
+double arc_estimate(const Corner& a, const Corner& b);
+/// The chord of ab is no picture of its curve on the surface, which turns by half a circle or more: it wraps around.
+bool wraps(const Corner& a, const Corner& b);
+
+/// Whether triangles (a,b,c) and (b,a,d) should become (a,d,c) and (d,b,c). In order: no edge that wraps around, fewer
+/// degenerate triangles, fewer triangles that oppose the surface's normal, then Delaunay in space (angles at c and d
+/// exceed two right ones, with a margin).
 bool flip_improves(const Corner& a, const Corner& b, const Corner& c, const Corner& d);
 
 /// Radius of the smallest sphere through three points; infinite for collinear ones.

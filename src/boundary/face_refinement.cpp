@@ -1,0 +1,260 @@
+// Delaunay refinement on a surface (Chew, "Guaranteed-quality mesh generation for curved surfaces", 1993) with the size
+// field in place of the circumradius bound. All corners (position, derivatives, normal, size) are kept in flat arrays
+// by node, so that the surface is evaluated for new points only. Splitting a curve because a point encroaches it, as
+// Ruppert does, was rejected here: curves follow the size field already, and a point that is refused leaves a triangle
+// at most a little too large.
+
+#include "boundary/face_refinement.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <queue>
+
+#include "boundary/criteria.h"
+
+namespace curvetet {
+
+namespace {
+
+constexpr double kRadius = 0.72;           ///< largest circumradius over size
+constexpr double kSpacing = 0.5;           ///< least distance of a new point to others over size
+constexpr double kSpacingFloor = 0.02;     ///< the same for points that cure a fold
+constexpr double kAligned = 0.7071;        ///< cosine of the largest angle of a triangle to the surface at its corners
+constexpr double kSineSmallAngle = 0.342;  ///< of 20 degrees
+constexpr double kLongEdge = 1.4;          ///< an edge over size that is split when no centre can be inserted
+constexpr double kEncroachHeight = 0.45;   ///< distance over size within which a diametral sphere counts
+constexpr std::size_t kLargestCavity = 64;
+
+enum class Need : std::uint8_t { none, shape, size, fold, wrap };
+
+struct Verdict {
+  Need need = Need::none;
+  double worth = 0;  ///< larger is worse
+};
+
+struct Entry {
+  double worth;
+  std::uint32_t triangle, stamp;
+  friend bool operator<(const Entry& a, const Entry& b) {
+    if (a.worth != b.worth) return a.worth < b.worth;
+    if (a.triangle != b.triangle) return a.triangle > b.triangle;
+    return a.stamp > b.stamp;
+  }
+};
+
+class FaceRefiner {
+ public:
+  FaceRefiner(FaceMesh& mesh, FaceId face, const Surface& surface, const SizeField& sizes, const VertexStore& vertices)
+      : mesh_(mesh), face_(face), surface_(surface), sizes_(sizes) {
+    for (std::size_t n = 0; n < mesh.node_count(); ++n) {
+      const FaceNode& node = mesh.node(NodeId(n));
+      const Vec3 position = vertices.position(node.vertex);
+      corners_.push_back(make_corner(node, position, surface.first(mesh.chart.to_uv(node.q)), mesh.chart));
+      size_at_.push_back(sizes.at_face(face, position));
+    }
+    wanted_ = [this](NodeId a, NodeId b, NodeId c, NodeId d) {
+      return flip_improves(corner(a), corner(b), corner(c), corner(d));
+    };
+  }
+
+  std::vector<AddedVertex> run(const Context& context) {
+    std::vector<TriangleId> all;
+    for (std::size_t t = 0; t < mesh_.triangle_slots(); ++t) {
+      if (mesh_.triangle(TriangleId(t)).alive()) all.push_back(TriangleId(t));
+    }
+    mesh_.restore(all, wanted_, changed_);
+    enqueue(all);
+    for (std::size_t step = 0; !queue_.empty(); ++step) {
+      if (step % 256 == 0 && context.should_stop()) break;
+      const Entry entry = queue_.top();
+      queue_.pop();
+      if (entry.stamp != stamps_[entry.triangle]) continue;
+      refine(TriangleId(entry.triangle));
+    }
+    return std::move(added_);
+  }
+
+ private:
+  const Corner& corner(NodeId n) const { return corners_[n.value()]; }
+
+  void enqueue(const std::vector<TriangleId>& triangles) {
+    stamps_.resize(mesh_.triangle_slots(), 0);
+    for (const TriangleId t : triangles) {
+      ++stamps_[t.value()];
+      if (!mesh_.triangle(t).alive()) continue;
+      const Verdict verdict = judge(t);
+      if (verdict.need != Need::none) queue_.push({verdict.worth, t.value(), stamps_[t.value()]});
+    }
+  }
+
+  double size_of(const FaceTriangle& t) const {
+    return (size_at_[t.node[0].value()] + size_at_[t.node[1].value()] + size_at_[t.node[2].value()]) / 3;
+  }
+
+  /// Wraps before folds before sizes before shapes; the larger the earlier among equals.
+  Verdict judge(TriangleId id) const {
+    const FaceTriangle& t = mesh_.triangle(id);
+    const Corner &a = corner(t.node[0]), &b = corner(t.node[1]), &c = corner(t.node[2]);
+    const double size = size_of(t);
+    if (wraps(a, b) || wraps(b, c) || wraps(c, a)) {
+      return {Need::wrap, 1e6 + std::max({arc_estimate(a, b), arc_estimate(b, c), arc_estimate(c, a)}) / size};
+    }
+    if (degenerate(a, b, c)) return {};
+    const double ab = distance(a.position, b.position), bc = distance(b.position, c.position),
+                 ca = distance(c.position, a.position);
+    const double longest = std::max({ab, bc, ca}), shortest = std::min({ab, bc, ca});
+    const double radius = circumradius(a.position, b.position, c.position);
+    double wanted = size;
+    if (radius > 0.5 * size) {
+      const Vec3 centroid = (1.0 / 3) * (a.position + b.position + c.position);
+      wanted = std::min(size, sizes_.at_face(face_, centroid));
+    }
+    if (folded(a, b, c) && longest > 2 * kSpacingFloor * wanted) return {Need::fold, 1e3 + longest / wanted};
+    // A flat triangle has a large radius and short edges: more points cure it only if they are far enough from its
+    // corners.
+    if (radius > kRadius * wanted && longest > kSpacing * wanted)
+      return {Need::size, 1 + std::min(radius / wanted, 500.0)};
+    if (radius > kSpacing * wanted && shortest < 2 * kSineSmallAngle * radius) return {Need::shape, radius / wanted};
+    return {};
+  }
+
+  static bool folded(const Corner& a, const Corner& b, const Corner& c) {
+    const Vec3 normal = normalized(cross(b.position - a.position, c.position - a.position));
+    const auto off = [&](const Corner& k) { return norm2(k.normal) > 0 && dot(normal, k.normal) < kAligned; };
+    return off(a) || off(b) || off(c);
+  }
+
+  void refine(TriangleId id) {
+    const Verdict verdict = judge(id);
+    const FaceTriangle t = mesh_.triangle(id);
+    std::array<Vec2, 3> q;
+    std::array<Vec3, 3> p;
+    for (std::size_t i = 0; i < 3; ++i) {
+      q[i] = corner(t.node[i]).q;
+      p[i] = corner(t.node[i]).position;
+    }
+    if (verdict.need != Need::wrap) {
+      if (const auto centre = ball_centre(surface_, mesh_.chart, q, p)) {
+        if (insert(*centre, id, verdict.need)) return;
+        if (verdict.need == Need::shape) return;
+        split_longest(id, verdict.need);
+        return;
+      }
+    }
+    if (const auto centre = metric_centre(surface_, mesh_.chart, q)) {
+      if (insert(evaluate(*centre), id, verdict.need)) return;
+    }
+    if (verdict.need != Need::shape) split_longest(id, verdict.need);
+  }
+
+  FacePoint evaluate(Vec2 q) const { return {q, surface_.first(mesh_.chart.to_uv(q))}; }
+
+  /// A point at the middle of the longest edge that may be split, if it is too long or is what is wrong.
+  void split_longest(TriangleId id, Need need) {
+    const FaceTriangle t = mesh_.triangle(id);
+    double best = 0;
+    std::size_t at = 3;
+    for (std::size_t i = 0; i < 3; ++i) {
+      if (t.use[i] != -1) continue;
+      const Corner &a = corner(t.node[(i + 1) % 3]), &b = corner(t.node[(i + 2) % 3]);
+      const double length = need == Need::wrap ? arc_estimate(a, b) : distance(a.position, b.position);
+      if (length > best) {
+        best = length;
+        at = i;
+      }
+    }
+    if (at == 3 || (need == Need::size && best < kLongEdge * size_of(t))) return;
+    const Vec2 middle = 0.5 * (corner(t.node[(at + 1) % 3]).q + corner(t.node[(at + 2) % 3]).q);
+    insert(evaluate({snap(middle.x), snap(middle.y)}), id, need);
+  }
+
+  /// Least distance to other nodes: the cure of a fold or wrap may be as close as the geometry itself forces it to.
+  double spacing(const FaceTriangle& t, Need need, double size) const {
+    if (need != Need::fold && need != Need::wrap) return kSpacing * size;
+    double longest = 0;
+    for (std::size_t i = 0; i < 3; ++i) {
+      const Corner &a = corner(t.node[i]), &b = corner(t.node[(i + 1) % 3]);
+      const double length = need == Need::wrap ? arc_estimate(a, b) : distance(a.position, b.position);
+      longest = std::max(longest, length);
+    }
+    return std::min(kSpacing * size, std::max(need == Need::wrap ? 0 : kSpacingFloor * size, 0.1 * longest));
+  }
+
+  bool insert(const FacePoint& point, TriangleId from, Need need) {
+    if (!finite(point.at.value)) return false;
+    const auto holder = mesh_.walk(point.q, from).triangle;
+    if (!holder) return false;
+    const Vec3 position = snap(point.at.value);
+    const double size = sizes_.at_face(face_, position);
+    if (crowded(position, *holder, spacing(mesh_.triangle(from), need, size), size)) return false;
+    if (mesh_.judge_insert(point.q, *holder) != PlanarRefusal::none) return false;
+    const VertexId vertex(static_cast<std::uint32_t>(kLocalVertices + added_.size()));
+    const FaceNode node{vertex, point.q};
+    corners_.push_back(make_corner(node, position, point.at, mesh_.chart));
+    size_at_.push_back(size);
+    added_.push_back({position, mesh_.chart.to_uv(point.q)});
+    const NodeId made = mesh_.insert(vertex, point.q, *holder, wanted_, changed_);
+    CURVETET_CHECK(made.value() + 1 == corners_.size());
+    enqueue(changed_);
+    return true;
+  }
+
+  /// Too close to a node, or within the diametral sphere of a segment, among the triangles whose spheres hold the
+  /// point.
+  bool crowded(Vec3 p, TriangleId holder, double spacing, double size) {
+    cavity_.assign(1, holder);
+    for (std::size_t k = 0; k < cavity_.size(); ++k) {
+      const FaceTriangle& t = mesh_.triangle(cavity_[k]);
+      for (std::size_t i = 0; i < 3; ++i) {
+        const Vec3 a = corner(t.node[(i + 1) % 3]).position, b = corner(t.node[(i + 2) % 3]).position;
+        if (distance(p, a) < spacing) return true;
+        if (t.use[i] != -1) {
+          if (encroaches(p, a, b, size)) return true;
+          continue;
+        }
+        const TriangleId n = t.neighbour[i];
+        if (!n.valid() || cavity_.size() >= kLargestCavity || !in_sphere(n, p)) continue;
+        if (std::find(cavity_.begin(), cavity_.end(), n) == cavity_.end()) cavity_.push_back(n);
+      }
+    }
+    return false;
+  }
+
+  static bool encroaches(Vec3 p, Vec3 a, Vec3 b, double size) {
+    if (dot(a - p, b - p) >= 0) return false;
+    return norm(cross(a - p, b - p)) < kEncroachHeight * size * distance(a, b);
+  }
+
+  /// Whether p lies in the equatorial sphere of a triangle.
+  bool in_sphere(TriangleId id, Vec3 p) const {
+    const FaceTriangle& t = mesh_.triangle(id);
+    const Vec3 a = corner(t.node[0]).position, u = corner(t.node[1]).position - a, v = corner(t.node[2]).position - a;
+    const Vec3 normal = cross(u, v);
+    const double area2 = norm2(normal);
+    if (!(area2 > 0)) return false;
+    const Vec3 centre = (0.5 / area2) * (norm2(u) * cross(v, normal) + norm2(v) * cross(normal, u));
+    return norm2(p - a - centre) < norm2(centre);
+  }
+
+  FaceMesh& mesh_;
+  FaceId face_;
+  const Surface& surface_;
+  const SizeField& sizes_;
+  FaceMesh::FlipWanted wanted_;
+  std::vector<Corner> corners_;        ///< by node
+  std::vector<double> size_at_;        ///< by node
+  std::vector<std::uint32_t> stamps_;  ///< by triangle: entries with an older stamp are stale
+  std::priority_queue<Entry> queue_;
+  std::vector<AddedVertex> added_;
+  std::vector<TriangleId> changed_, cavity_;
+};
+
+}  // namespace
+
+std::vector<AddedVertex> refine_face(FaceMesh& mesh, FaceId face, const Surface& surface, const SizeField& sizes,
+                                     const VertexStore& vertices, const Context& context) {
+  return FaceRefiner(mesh, face, surface, sizes, vertices).run(context);
+}
+
+}  // namespace curvetet
