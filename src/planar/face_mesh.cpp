@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <tuple>
 
 #include "predicates/predicates.h"
 
@@ -137,21 +138,57 @@ TriangleId FaceMesh::nearby_triangle(Vec2 q) const {
   return best;
 }
 
+// Which boundary edges the horizontal ray from q to the right meets tells whether q is inside, and the nearest of them
+// has a triangle from which the ray sees q.
+FaceMesh::Ray FaceMesh::cast(Vec2 q) const {
+  struct Hit {
+    double x;
+    SegmentGrid::Entry entry;
+    bool operator<(const Hit& h) const { return std::tie(x, entry) < std::tie(h.x, h.entry); }
+    bool operator==(const Hit& h) const { return entry == h.entry; }
+  };
+  std::vector<Hit> hits;
+  Ray ray;
+  boundary_.near(q, {1, q.y}, [&](SegmentGrid::Entry e) {
+    const Vec2 a = point(NodeId(e.a)), b = point(NodeId(e.b));
+    if (q.y < std::min(a.y, b.y) || q.y > std::max(a.y, b.y) || q.x > std::max(a.x, b.x)) return;
+    const int side = orient2d(a, b, q);
+    if (side == 0 && q.x >= std::min(a.x, b.x)) ray.touched = e;
+    const bool upward = a.y <= q.y && q.y < b.y, downward = b.y <= q.y && q.y < a.y;
+    if ((upward && side > 0) || (downward && side < 0)) {
+      hits.push_back({a.x + (q.y - a.y) / (b.y - a.y) * (b.x - a.x), e});
+    }
+  });
+  std::sort(hits.begin(), hits.end());
+  hits.erase(std::unique(hits.begin(), hits.end()), hits.end());
+  for (const Hit& h : hits) ray.winding += point(NodeId(h.entry.a)).y < point(NodeId(h.entry.b)).y ? 1 : -1;
+  if (!hits.empty()) ray.first = hits.front().entry;
+  return ray;
+}
+
 std::optional<TriangleId> FaceMesh::locate(Vec2 q, TriangleId hint) const {
   const bool usable = hint.value() < triangles_.size() && triangles_[hint].alive();
   const TriangleId from = usable ? hint : nearby_triangle(q);
   if (!from.valid()) return std::nullopt;
   const WalkEnd end = walk(q, from, Stop::at_boundary);
   if (end.triangle) return end.triangle;
+  const Ray ray = cast(q);
+  const std::optional<SegmentGrid::Entry> seen = ray.touched ? ray.touched : ray.first;
+  if (!seen || (!ray.touched && ray.winding == 0)) return std::nullopt;
+  const std::optional<FaceEdge> edge = find_edge(NodeId(seen->a), NodeId(seen->b));
+  CURVETET_CHECK(edge.has_value());
+  const WalkEnd again = walk(q, edge->triangle, Stop::at_boundary);
+  return again.triangle ? again.triangle : scan(q);
+}
+
+std::optional<TriangleId> FaceMesh::scan(Vec2 q) const {
   for (std::uint32_t k = 0; k < triangles_.size(); ++k) {
     const FaceTriangle& f = triangles_[TriangleId(k)];
     if (!f.alive()) continue;
     const Vec2 a = point(f.node[0]), b = point(f.node[1]), c = point(f.node[2]);
-    if (q.x < std::min({a.x, b.x, c.x}) || q.x > std::max({a.x, b.x, c.x}) || q.y < std::min({a.y, b.y, c.y}) ||
-        q.y > std::max({a.y, b.y, c.y})) {
-      continue;
-    }
-    if (contains(TriangleId(k), q)) return TriangleId(k);
+    const bool boxed = q.x >= std::min({a.x, b.x, c.x}) && q.x <= std::max({a.x, b.x, c.x}) &&
+                       q.y >= std::min({a.y, b.y, c.y}) && q.y <= std::max({a.y, b.y, c.y});
+    if (boxed && contains(TriangleId(k), q)) return TriangleId(k);
   }
   return std::nullopt;
 }

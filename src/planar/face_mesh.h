@@ -99,7 +99,8 @@ class FaceMesh {
   /// The edge, from the triangle that sees it as (a,b) if there is one, else from the other.
   std::optional<FaceEdge> find_edge(NodeId a, NodeId b) const;
 
-  /// The triangle that contains q (walk from the hint, then a scan); empty if outside.
+  /// The triangle that contains q (walk from the hint, again from where a ray to the boundary sees
+  /// q, then a scan); empty if outside.
   std::optional<TriangleId> locate(Vec2 q, TriangleId hint = TriangleId()) const;
   /// Where a walk from a triangle towards q ends: at the triangle that contains q, or before a constrained edge that q
   /// lies strictly beyond (the segment a refinement would split instead). Neither if the walk ran into its step bound.
@@ -165,11 +166,20 @@ class FaceMesh {
     TriangleId holder;  ///< inside: a triangle that contains q
   };
 
+  /// How often the boundary winds around a point, by the boundary edges that a ray from it meets.
+  struct Ray {
+    int winding = 0;
+    std::optional<SegmentGrid::Entry> first;    ///< the nearest edge met
+    std::optional<SegmentGrid::Entry> touched;  ///< an edge the point lies on
+  };
+
   // face_mesh.cpp
   Vec2 point(NodeId n) const { return nodes_[n].q; }
   bool has_edge(FaceEdge e) const;
   WalkEnd walk(Vec2 q, TriangleId from, Stop stop) const;
   TriangleId nearby_triangle(Vec2 q) const;
+  Ray cast(Vec2 q) const;
+  std::optional<TriangleId> scan(Vec2 q) const;
   bool contains(TriangleId t, Vec2 q) const;
   FaceEdge mirror(FaceEdge e) const;
   FaceEdge across(FaceEdge e) const;  // as mirror; without a triangle at the boundary
