@@ -35,6 +35,7 @@ void label_all(CadBody& body) {
     for (std::size_t i = 0; i < labels.size(); ++i) labels[i].cad_id = static_cast<std::uint32_t>(i + 1);
   }
   body.solid_paths.assign(body.solids.size(), "");
+  body.shared_product.assign(body.solids.size(), 0);
 }
 
 void replace_shape(CadBody& body, const TopoDS_Shape& shape,

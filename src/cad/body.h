@@ -18,6 +18,7 @@ struct CadBody {
   TopoDS_Shape shape;
   std::vector<Label> solids, faces, edges, vertices;
   std::vector<std::string> solid_paths;  ///< assembly path per solid
+  std::vector<char> shared_product;      ///< per solid: its product has other solids too (known while reading only)
   std::string unit = "mm";
   std::vector<HealingNote> notes;
 };

@@ -11,6 +11,7 @@
 #include <BRep_Tool.hxx>
 #include <Bnd_Box.hxx>
 #include <GProp_GProps.hxx>
+#include <ShapeAnalysis_Surface.hxx>
 #include <TopExp.hxx>
 #include <TopExp_Explorer.hxx>
 #include <TopoDS.hxx>
@@ -293,7 +294,9 @@ class Converter {
     for (TopoDS_Iterator it(shape.Oriented(TopAbs_FORWARD)); it.More(); it.Next()) {
       if (it.Value().ShapeType() != TopAbs_VERTEX) continue;
       const TopoDS_Vertex& vertex = TopoDS::Vertex(it.Value());
-      const gp_Pnt2d uv = BRep_Tool::Parameters(vertex, shape);
+      // The parameters stored with the vertex may be missing.
+      const gp_Pnt2d uv =
+          ShapeAnalysis_Surface(geometry).ValueOfUV(BRep_Tool::Pnt(vertex), BRep_Tool::Tolerance(vertex));
       face.internal_vertices.push_back(vertex_of(vertex));
       face.internal_vertex_uv.push_back({uv.X(), uv.Y()});
     }

@@ -9,7 +9,6 @@
 #include <IGESCAFControl_Reader.hxx>
 #include <IGESData_GlobalSection.hxx>
 #include <IGESData_IGESModel.hxx>
-#include <Interface_Static.hxx>
 #include <Quantity_Color.hxx>
 #include <STEPCAFControl_Reader.hxx>
 #include <TColStd_SequenceOfAsciiString.hxx>
@@ -27,6 +26,7 @@
 #include <fstream>
 
 #include "cad/guard.h"
+#include "cad/step_names.h"
 
 namespace curvetet {
 namespace {
@@ -166,6 +166,7 @@ class Document {
       Label& solid = label_at(body_.solids, found);
       solid.name = solids.Extent() == 1 || name.empty() ? name : name + "_" + std::to_string(i);
       solid.colour = colour;
+      body_.shared_product[static_cast<std::size_t>(found - 1)] = solids.Extent() > 1 ? 1 : 0;
       body_.solid_paths[static_cast<std::size_t>(found - 1)] = path;
     }
     if (colour && solids.Extent() == 0) {
@@ -203,21 +204,7 @@ class Document {
   TopTools_IndexedMapOfShape solid_map_, face_map_, edge_map_;
 };
 
-/// Settings of OpenCASCADE's translators are process-wide; these are put back at the end of the reading.
-class Setting {
- public:
-  Setting(const char* name, int value) : name_(name), before_(Interface_Static::IVal(name)) {
-    Interface_Static::SetIVal(name, value);
-  }
-  ~Setting() { Interface_Static::SetIVal(name_, before_); }
-  Setting(const Setting&) = delete;
-  Setting& operator=(const Setting&) = delete;
-
- private:
-  const char* name_;
-  int before_;
-};
-
+/// The document's automatic names ("SOLID") are a process-wide setting; it is put back at the end of the reading.
 class NoAutomaticNames {
  public:
   NoAutomaticNames() : before_(XCAFDoc_ShapeTool::AutoNaming()) { XCAFDoc_ShapeTool::SetAutoNaming(false); }
@@ -244,7 +231,6 @@ void note_unit(CadBody& body, const std::string& unit) {
 Result<CadBody> read_step(const std::string& path) {
   const NoAutomaticNames no_names;
   STEPCAFControl_Reader reader;
-  const Setting sub_shape_names("read.stepcaf.subshapes.name", 1);
   reader.SetLayerMode(false);
   reader.SetPropsMode(false);
   reader.SetGDTMode(false);
@@ -257,6 +243,7 @@ Result<CadBody> read_step(const std::string& path) {
   if (!reader.Transfer(document)) return failed(path, "no shape in it could be translated");
   CadBody body = Document(document).make_body();
   if (body.shape.IsNull()) return failed(path, "it holds no shape");
+  add_step_names(reader.Reader().WS(), body);
   if (lengths.Length() > 0) note_unit(body, short_unit(lengths(1).ToCString()));
   return body;
 }
