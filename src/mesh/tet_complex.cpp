@@ -28,42 +28,23 @@ TetComplex::FacetKey TetComplex::key(TetFacet f) const {
   return k;
 }
 
-TetFacet TetComplex::mirror(TetFacet f) const {
-  const TetId n = neighbour(f.tet, f.local);
-  const std::array<TetId, 4>& back = neighbours_[n.value()];
-  const int j = back[0] == f.tet ? 0 : back[1] == f.tet ? 1 : back[2] == f.tet ? 2 : 3;
-  return {n, j};
-}
-
-std::array<VertexId, 3> TetComplex::facet_vertices(TetFacet f) const {
-  const std::array<int, 3>& k = kFacet[static_cast<std::size_t>(f.local)];
-  return {vertex(f.tet, k[0]), vertex(f.tet, k[1]), vertex(f.tet, k[2])};
-}
-
 TetId TetComplex::add(const Vertices& v) {
   if (!free_.empty()) {
     const std::uint32_t slot = free_.back();
     free_.pop_back();
-    vertices_[slot] = v;
-    neighbours_[slot] = {};
+    tets_[slot] = {v, {}};
     flags_[slot] = 0;
     return TetId(slot);
   }
-  vertices_.push_back(v);
-  neighbours_.emplace_back();
+  tets_.push_back({v, {}});
   flags_.push_back(0);
-  return TetId(vertices_.size() - 1);
+  return TetId(tets_.size() - 1);
 }
 
 void TetComplex::remove(TetId t) {
   CURVETET_CHECK(is_alive(t));
-  vertices_[t.value()][0] = VertexId();
+  tets_[t.value()].vertices[0] = VertexId();
   free_.push_back(t.value());
-}
-
-void TetComplex::glue(TetFacet a, TetFacet b) {
-  set_neighbour(a.tet, a.local, b.tet);
-  set_neighbour(b.tet, b.local, a.tet);
 }
 
 FaceId TetComplex::locked_face(TetFacet f) const {
@@ -97,17 +78,15 @@ void TetComplex::set_mark(TetId t, int which, bool on) {
 }
 
 void TetComplex::reserve(std::size_t tets) {
-  vertices_.reserve(tets);
-  neighbours_.reserve(tets);
+  tets_.reserve(tets);
   flags_.reserve(tets);
 }
 
 std::size_t TetComplex::bytes() const {
   // A node of the lock table: key, value, cached hash and link.
   const std::size_t lock_node = sizeof(FacetKey) + sizeof(FaceId) + 2 * sizeof(void*);
-  return vertices_.capacity() * sizeof(Vertices) + neighbours_.capacity() * sizeof(neighbours_[0]) +
-         (flags_.capacity() + free_.capacity()) * sizeof(std::uint32_t) + locks_.size() * lock_node +
-         locks_.bucket_count() * sizeof(void*);
+  return tets_.capacity() * sizeof(Tet) + (flags_.capacity() + free_.capacity()) * sizeof(std::uint32_t) +
+         locks_.size() * lock_node + locks_.bucket_count() * sizeof(void*);
 }
 
 }  // namespace curvetet

@@ -31,43 +31,56 @@ struct TetFacet {
   friend bool operator==(const TetFacet&, const TetFacet&) = default;
 };
 
-/// Struct of arrays with recycled slots. Locks are kept on both sides of a facet.
+/// Flat arrays with recycled slots. Locks are kept on both sides of a facet.
 class TetComplex {
  public:
   using Vertices = std::array<VertexId, 4>;
 
-  std::size_t slots() const { return vertices_.size(); }   ///< alive and free slots
-  std::size_t alive() const { return vertices_.size() - free_.size(); }
-  bool is_alive(TetId t) const { return vertices_[t.value()][0].valid(); }
+  std::size_t slots() const { return tets_.size(); }  ///< alive and free slots
+  std::size_t alive() const { return tets_.size() - free_.size(); }
+  bool is_alive(TetId t) const { return tets_[t.value()].vertices[0].valid(); }
   bool is_ghost(TetId t) const {
-    const Vertices& v = vertices_[t.value()];
-    return v[0] == kInfinite || v[1] == kInfinite || v[2] == kInfinite || v[3] == kInfinite;
+    const Vertices& v = tets_[t.value()].vertices;
+    return (v[0] == kInfinite) | (v[1] == kInfinite) | (v[2] == kInfinite) | (v[3] == kInfinite);
   }
-  const Vertices& vertices(TetId t) const { return vertices_[t.value()]; }
-  VertexId vertex(TetId t, int i) const { return vertices_[t.value()][static_cast<std::size_t>(i)]; }
-  TetId neighbour(TetId t, int i) const { return neighbours_[t.value()][static_cast<std::size_t>(i)]; }
+  const Vertices& vertices(TetId t) const { return tets_[t.value()].vertices; }
+  const std::array<TetId, 4>& neighbours(TetId t) const { return tets_[t.value()].neighbours; }
+  VertexId vertex(TetId t, int i) const { return tets_[t.value()].vertices[static_cast<std::size_t>(i)]; }
+  TetId neighbour(TetId t, int i) const { return tets_[t.value()].neighbours[static_cast<std::size_t>(i)]; }
   /// Local index of v in t, or -1.
   int local(TetId t, VertexId v) const {
-    const Vertices& w = vertices_[t.value()];
-    return w[0] == v ? 0 : w[1] == v ? 1 : w[2] == v ? 2 : w[3] == v ? 3 : -1;
+    const Vertices& w = tets_[t.value()].vertices;
+    // Sums rather than branches: the answer is random, and branches on it would be mispredicted.
+    const int i = (w[1] == v) + 2 * (w[2] == v) + 3 * (w[3] == v);
+    return i != 0 || w[0] == v ? i : -1;
   }
   /// The same facet seen from the other tet.
-  TetFacet mirror(TetFacet f) const;
+  TetFacet mirror(TetFacet f) const {
+    const TetId n = neighbour(f.tet, f.local);
+    const std::array<TetId, 4>& back = tets_[n.value()].neighbours;
+    return {n, (back[1] == f.tet) + 2 * (back[2] == f.tet) + 3 * (back[3] == f.tet)};
+  }
   /// The facet's vertices in the order of kFacet.
-  std::array<VertexId, 3> facet_vertices(TetFacet f) const;
+  std::array<VertexId, 3> facet_vertices(TetFacet f) const {
+    const std::array<int, 3>& k = kFacet[static_cast<std::size_t>(f.local)];
+    return {vertex(f.tet, k[0]), vertex(f.tet, k[1]), vertex(f.tet, k[2])};
+  }
 
   TetId add(const Vertices& v);  ///< takes a free slot; neighbours invalid, flags clear
   void remove(TetId t);          ///< frees the slot; neighbours are not touched
-  void set_neighbour(TetId t, int i, TetId n) { neighbours_[t.value()][static_cast<std::size_t>(i)] = n; }
-  void set_vertex(TetId t, int i, VertexId v) { vertices_[t.value()][static_cast<std::size_t>(i)] = v; }
+  void set_neighbour(TetId t, int i, TetId n) { tets_[t.value()].neighbours[static_cast<std::size_t>(i)] = n; }
+  void set_vertex(TetId t, int i, VertexId v) { tets_[t.value()].vertices[static_cast<std::size_t>(i)] = v; }
   /// Makes two facets each other's neighbour.
-  void glue(TetFacet a, TetFacet b);
+  void glue(TetFacet a, TetFacet b) {
+    set_neighbour(a.tet, a.local, b.tet);
+    set_neighbour(b.tet, b.local, a.tet);
+  }
 
   // Locks: four bits of the flags, one a facet; the CAD face in a side table.
   bool is_locked(TetFacet f) const { return (flags_[f.tet.value()] >> f.local) & 1U; }
-  FaceId locked_face(TetFacet f) const;           ///< invalid if not locked
-  void lock(TetFacet f, FaceId face);             ///< both sides
-  void unlock(TetFacet f);                        ///< both sides
+  FaceId locked_face(TetFacet f) const;  ///< invalid if not locked
+  void lock(TetFacet f, FaceId face);    ///< both sides
+  void unlock(TetFacet f);               ///< both sides
   std::size_t locked_count() const { return locks_.size(); }
   /// Carries the lock of an old facet to a new tet's facet with the same vertices (used by commits; one side).
   void set_lock_bit(TetFacet f, bool locked);
@@ -88,8 +101,12 @@ class TetComplex {
   };
   FacetKey key(TetFacet f) const;
 
-  std::vector<Vertices> vertices_;
-  std::vector<std::array<TetId, 4>> neighbours_;
+  /// Vertices and neighbours side by side, half a cache line: whoever reads one reads the other next.
+  struct alignas(32) Tet {
+    Vertices vertices;
+    std::array<TetId, 4> neighbours;
+  };
+  std::vector<Tet> tets_;
   std::vector<std::uint32_t> flags_;
   std::vector<std::uint32_t> free_;
   std::unordered_map<FacetKey, FaceId, FacetHash> locks_;  // looked up, never iterated

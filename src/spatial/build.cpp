@@ -167,7 +167,7 @@ class Builder {
       if (w != kInfinite && positions_[w.value()] == p) return w;
     }
     grow(first, p, order_[v.value()]);
-    kernel::replace_by_star(complex_, marks_, v, tets_, boundary_, star_);
+    star_builder_.replace(complex_, marks_, v, tets_, boundary_, star_);
     last_ = star_.back();
     return VertexId();
   }
@@ -212,6 +212,7 @@ class Builder {
   kernel::Stream stream_;
   kernel::Sites sites_;
   TetId last_;
+  kernel::StarBuilder star_builder_;
   std::vector<TetId> tets_, star_;
   std::vector<TetFacet> boundary_;
 };

@@ -1,9 +1,8 @@
-// The star is glued without a table of edges: around an edge of the cavity's boundary one turns through the old tets,
-// which are still linked, until the boundary is met again. There the old tet's link has already been replaced by the
-// new tet.
+// A star is glued along the edges of the cavity's boundary. Small boundaries, nearly all, number their vertices and
+// enter each new tet in a square table under its directed edges; the neighbour is under the reversed edge. Large ones
+// need no table: around an edge of the boundary one turns through the old tets, which are still linked, until the
+// boundary is met again, where the old tet's link has already been replaced by the new tet.
 #include "spatial/kernel.h"
-
-#include <cmath>
 
 #include "base/error.h"
 
@@ -32,11 +31,9 @@ TetId scan(const TetComplex& complex, const Sites& sites, const Vec3& p) {
 /// Turns around the edge (a,b) from old tet t, leaving it through the facet opposite `away`, to the new tet beyond.
 TetId turn(const TetComplex& complex, const Marks& marks, TetId t, VertexId a, VertexId b, VertexId away) {
   for (;;) {
-    VertexId kept;  // the third vertex of the facet by which t is left
-    for (const VertexId v : complex.vertices(t)) {
-      if (v != a && v != b && v != away) kept = v;
-    }
-    t = complex.neighbour(t, complex.local(t, away));
+    const int exit = complex.local(t, away);
+    const VertexId kept = complex.vertex(t, 6 - complex.local(t, a) - complex.local(t, b) - exit);
+    t = complex.neighbour(t, exit);
     if (marks.get(t.value()) < Marks::kInside) return t;
     away = kept;
   }
@@ -68,8 +65,8 @@ TetId walk(const TetComplex& complex, const Sites& sites, const Vec3& p, TetId s
   const int infinite = infinite_local(complex, start);
   TetId t = infinite >= 0 ? complex.neighbour(start, infinite) : start;
   TetId previous;
-  auto steps = static_cast<std::int64_t>(500 + 20 * std::cbrt(static_cast<double>(complex.slots())));
-  while (steps-- > 0) {
+  // So many steps cost about a fourth of the scan.
+  for (std::size_t steps = 1000 + complex.slots() / 8; steps > 0; --steps) {
     const std::uint32_t turn_by = stream.next();
     bool moved = false;
     for (std::uint32_t k = 0; k < 4 && !moved; ++k) {
@@ -104,8 +101,21 @@ TetId add_first_tet(TetComplex& complex, VertexId a, VertexId b, VertexId c, Ver
   return t;
 }
 
-void replace_by_star(TetComplex& complex, Marks& marks, VertexId v, std::span<const TetId> tets,
-                     std::span<const TetFacet> boundary, std::vector<TetId>& star) {
+void StarBuilder::replace(TetComplex& complex, Marks& marks, VertexId v, std::span<const TetId> tets,
+                          std::span<const TetFacet> boundary, std::vector<TetId>& star) {
+  add_tets(complex, v, boundary, star);
+  // A sphere of F triangles has F / 2 + 2 vertices.
+  if (boundary.size() / 2 + 2 <= kMostVertices) {
+    glue_by_table(complex, star);
+  } else {
+    marks.cover(complex.slots());
+    glue_by_turning(complex, marks, boundary, star);
+  }
+  for (const TetId t : tets) complex.remove(t);
+}
+
+void StarBuilder::add_tets(TetComplex& complex, VertexId v, std::span<const TetFacet> boundary,
+                           std::vector<TetId>& star) {
   star.clear();
   for (const TetFacet& f : boundary) {
     const TetFacet outer = complex.mirror(f);
@@ -117,22 +127,46 @@ void replace_by_star(TetComplex& complex, Marks& marks, VertexId v, std::span<co
     complex.set_neighbour(f.tet, f.local, t);
     star.push_back(t);
   }
-  marks.cover(complex.slots());
+}
+
+std::uint32_t StarBuilder::number_of(VertexId v) {
+  const std::size_t at = v == kInfinite ? 0 : std::size_t{v.value()} + 1;
+  if (numbers_.size() <= at) numbers_.resize(at + at / 2 + 1, 0);
+  std::uint32_t& number = numbers_[at];
+  if (number < named_ && names_[number] == v) return number;
+  number = named_++;
+  names_[number] = v;
+  return number;
+}
+
+void StarBuilder::glue_by_table(TetComplex& complex, std::span<const TetId> star) {
+  std::array<std::array<std::uint32_t, 3>, 2 * kMostVertices> numbers;
+  named_ = 0;
+  for (std::size_t k = 0; k < star.size(); ++k) {
+    for (std::size_t i = 0; i < 3; ++i) numbers[k][i] = number_of(complex.vertex(star[k], static_cast<int>(i)));
+    const auto [a, b, c] = numbers[k];
+    beyond_[a][b] = beyond_[b][c] = beyond_[c][a] = star[k];
+  }
+  for (std::size_t k = 0; k < star.size(); ++k) {
+    const auto [a, b, c] = numbers[k];
+    complex.set_neighbour(star[k], 2, beyond_[b][a]);
+    complex.set_neighbour(star[k], 0, beyond_[c][b]);
+    complex.set_neighbour(star[k], 1, beyond_[a][c]);
+  }
+}
+
+void StarBuilder::glue_by_turning(TetComplex& complex, const Marks& marks, std::span<const TetFacet> boundary,
+                                  std::span<const TetId> star) const {
   for (std::size_t k = 0; k < boundary.size(); ++k) {
-    const TetFacet f = boundary[k];
     const TetId t = star[k];
     for (int i = 0; i < 3; ++i) {
       if (complex.neighbour(t, i).valid()) continue;
       const VertexId a = complex.vertex(t, (i + 1) % 3);
       const VertexId b = complex.vertex(t, (i + 2) % 3);
-      const VertexId c = complex.vertex(t, i);
-      const TetId other = turn(complex, marks, f.tet, a, b, c);
-      int j = 0;
-      while (complex.vertex(other, j) == a || complex.vertex(other, j) == b) ++j;
-      complex.glue({t, i}, {other, j});
+      const TetId other = turn(complex, marks, boundary[k].tet, a, b, complex.vertex(t, i));
+      complex.glue({t, i}, {other, 3 - complex.local(other, a) - complex.local(other, b)});
     }
   }
-  for (const TetId t : tets) complex.remove(t);
 }
 
 }  // namespace curvetet::kernel

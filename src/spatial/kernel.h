@@ -94,9 +94,31 @@ TetId walk(const TetComplex& complex, const Sites& sites, const Vec3& p, TetId s
 /// A finite tet with its four ghosts; orient3d(a,b,c,d) must be positive. Returns the finite tet.
 TetId add_first_tet(TetComplex& complex, VertexId a, VertexId b, VertexId c, VertexId d);
 
-/// Replaces the tets, which form a ball, by the star of v over the ball's boundary. `marks` must say kInside
-/// or kBase of `tets` and of no other. Carries locks and regions. New tets have v as local vertex 3.
-void replace_by_star(TetComplex& complex, Marks& marks, VertexId v, std::span<const TetId> tets,
-                     std::span<const TetFacet> boundary, std::vector<TetId>& star);
+/// Replaces balls of tets by stars. The scratch arrays live as long as the object.
+class StarBuilder {
+ public:
+  /// Replaces the tets, which form a ball, by the star of v over the ball's boundary. `marks` must say kInside or kBase
+  /// of `tets` and of no other. Carries locks and regions. New tets have v as local vertex 3, in the order of
+  /// `boundary`.
+  void replace(TetComplex& complex, Marks& marks, VertexId v, std::span<const TetId> tets,
+               std::span<const TetFacet> boundary, std::vector<TetId>& star);
+  std::size_t bytes() const { return numbers_.capacity() * sizeof(std::uint32_t); }
+
+ private:
+  static constexpr std::uint32_t kMostVertices = 64;  ///< of a boundary that is glued by table
+
+  void add_tets(TetComplex& complex, VertexId v, std::span<const TetFacet> boundary, std::vector<TetId>& star);
+  void glue_by_table(TetComplex& complex, std::span<const TetId> star);
+  void glue_by_turning(TetComplex& complex, const Marks& marks, std::span<const TetFacet> boundary,
+                       std::span<const TetId> star) const;
+  std::uint32_t number_of(VertexId v);
+
+  /// numbers_[v] is v's number if names_ agrees; nothing has to be cleared. The infinite vertex is at the end.
+  std::vector<std::uint32_t> numbers_;
+  std::array<VertexId, kMostVertices> names_{};
+  std::uint32_t named_ = 0;
+  /// The new tet that has the edge from one numbered vertex to another.
+  std::array<std::array<TetId, kMostVertices>, kMostVertices> beyond_{};
+};
 
 }  // namespace curvetet::kernel

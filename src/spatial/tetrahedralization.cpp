@@ -65,7 +65,7 @@ TetId Tetrahedralization::commit(const Cavity& cavity) {
     CURVETET_CHECK(complex_.is_alive(t));
     marks_.set(t.value(), kernel::Marks::kInside);
   }
-  kernel::replace_by_star(complex_, marks_, cavity.vertex, cavity.tets, cavity.boundary, star_);
+  star_builder_.replace(complex_, marks_, cavity.vertex, cavity.tets, cavity.boundary, star_);
   for (const TetId t : star_) touch(t);
   last_ = star_.back();
   return last_;
@@ -172,7 +172,7 @@ std::size_t Tetrahedralization::bytes() const {
   return complex_.bytes() + vertex_tet_.raw().capacity() * sizeof(TetId) +
          kept_degree_.raw().capacity() * sizeof(std::uint32_t) + kept_.size() * kept_node +
          kept_.bucket_count() * sizeof(void*) + star_.capacity() * sizeof(TetId) + marks_.bytes() +
-         vertex_marks_.bytes();
+         vertex_marks_.bytes() + star_builder_.bytes();
 }
 
 void Tetrahedralization::touch(TetId t) {

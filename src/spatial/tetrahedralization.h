@@ -116,6 +116,7 @@ class Tetrahedralization {
   IndexedVector<VertexId, TetId> vertex_tet_;
   std::unordered_set<std::uint64_t> kept_;              // iterated only to be sorted
   IndexedVector<VertexId, std::uint32_t> kept_degree_;  // how many kept segments end there
+  kernel::StarBuilder star_builder_;
   std::vector<TetId> star_;
   mutable TetId last_;                  // where the last location ended
   mutable kernel::Marks marks_;         // by tet
