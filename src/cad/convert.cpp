@@ -20,6 +20,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "cad/fit.h"
 #include "cad/guard.h"
 #include "cad/loops.h"
 #include "cad/occt_geometry.h"
@@ -134,6 +135,7 @@ class Converter {
     make_edges();
     make_faces();
     model_.box = sampled_box(model_);
+    fit_parameter_curves(model_);
   }
 
   std::optional<Error> find_box() {
