@@ -8,6 +8,7 @@
 #include <cmath>
 #include <limits>
 #include <map>
+#include <optional>
 #include <tuple>
 
 #include "planar/segment_grid.h"
@@ -223,6 +224,32 @@ double squared_distance(Vec2 a, Vec2 b, Vec2 c, Vec2 d) {
       {squared_distance(a, c, d), squared_distance(b, c, d), squared_distance(c, a, b), squared_distance(d, a, b)});
 }
 
+struct Near {
+  std::uint32_t segment;
+  double distance;
+};
+
+/// The segment of another loop nearest to one, if nearer than the bound: looked for in boxes that grow until they hold
+/// either one that is near enough or the whole chart.
+std::optional<Near> nearest_of_other_loop(const LoopGraph& graph, const SegmentGrid& grid, std::size_t i,
+                                          double bound) {
+  const auto q = [&graph](NodeId n) { return graph.nodes[n].q; };
+  const LoopSegment& s = graph.segments[i];
+  const Vec2 a = q(s.a), b = q(s.b);
+  std::optional<Near> found;
+  for (double reach = std::min(bound, 1.0 / 64);; reach = std::min(bound, 2 * reach)) {
+    const Vec2 low{std::min(a.x, b.x) - reach, std::min(a.y, b.y) - reach};
+    const Vec2 high{std::max(a.x, b.x) + reach, std::max(a.y, b.y) + reach};
+    grid.near(low, high, [&](SegmentGrid::Entry e) {
+      const LoopSegment& t = graph.segments[e.a];
+      if (t.loop == s.loop) return;
+      const double d = std::sqrt(squared_distance(a, b, q(t.a), q(t.b)));
+      if (d < bound && (!found || std::pair(d, e.a) < std::pair(found->distance, found->segment))) found = Near{e.a, d};
+    });
+    if ((found && found->distance <= reach) || reach >= std::min(bound, 4.0)) return found;
+  }
+}
+
 }  // namespace
 
 LoopGraph assemble(const FaceInput& input) { return Assembler(input).run(); }
@@ -251,6 +278,7 @@ std::vector<LoopFault> describe_nesting(const LoopGraph& graph, const std::vecto
   std::vector<LoopFault> faults;
   std::vector<double> best(loops, std::numeric_limits<double>::infinity());
   std::vector<LoopFault> nearest(loops);
+  const SegmentGrid grid = grid_of(graph);
   for (std::size_t i = 0; i < graph.segments.size(); ++i) {
     const LoopSegment& s = graph.segments[i];
     if (!faulty[i]) continue;
@@ -259,13 +287,10 @@ std::vector<LoopFault> describe_nesting(const LoopGraph& graph, const std::vecto
       continue;
     }
     if (nearest[s.loop].what.empty()) nearest[s.loop] = {s.use, -1, s.index, 0, "not nested"};
-    for (const LoopSegment& t : graph.segments) {
-      if (t.loop == s.loop) continue;
-      const double d = squared_distance(q(s.a), q(s.b), q(t.a), q(t.b));
-      if (d < best[s.loop]) {
-        best[s.loop] = d;
-        nearest[s.loop] = {s.use, t.use, s.index, t.index, "not nested"};
-      }
+    if (const auto found = nearest_of_other_loop(graph, grid, i, best[s.loop])) {
+      const LoopSegment& t = graph.segments[found->segment];
+      best[s.loop] = found->distance;
+      nearest[s.loop] = {s.use, t.use, s.index, t.index, "not nested"};
     }
   }
   for (LoopFault& f : nearest) {

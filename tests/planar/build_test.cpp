@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <random>
 
+#include "oracle/planar_naive.h"
 #include "planar/face_mesh.h"
 #include "planar/shapes.h"
 #include "predicates/predicates.h"
@@ -213,6 +214,115 @@ TEST(Build, IsolatedVertices) {
   EXPECT_FALSE(other.build({{square}, {{VertexId(50U), {0.5, 0.25}}}}).empty());
   EXPECT_FALSE(other.build({{square}, {{VertexId(50U), {0.75, 0.25}}}}).empty());
   EXPECT_FALSE(other.build({{square}, {{VertexId(50U), {0, 0}}, {VertexId(51U), {0, 0}}}}).empty());
+}
+
+TEST(Build, FreeSlitAsALoop) {
+  ChainInput there{1, {VertexId(10U), VertexId(11U), VertexId(12U)}, {{0, 0}, {0.25, 0}, {0.25, 0.25}}, false};
+  ChainInput back{2, {VertexId(12U), VertexId(11U), VertexId(10U)}, {{0.25, 0.25}, {0.25, 0}, {0, 0}}, false};
+  const FaceMesh mesh = built({{closed_loop(rectangle(-0.5, -0.5, 0.5, 0.5), 0), {{there, back}, false}}, {}});
+  EXPECT_EQ(area(mesh), 1.0);
+  EXPECT_EQ(sides_of(mesh, 1), 2U);
+  EXPECT_EQ(sides_of(mesh, 2), 2U);
+  FaceMesh other;
+  EXPECT_TRUE(names(other.build({{{{there, back}, false}}, {}}), "inverted"));
+}
+
+/// Winding number of all one-sided segments around a point on none of them.
+int winding(const FaceInput& input, Vec2 p) {
+  int sum = 0;
+  for (const LoopInput& loop : input.loops) {
+    for (const ChainInput& chain : loop.chains) {
+      for (std::size_t i = 0; i + 1 < chain.q.size(); ++i) {
+        const Vec2 a = chain.q[i], b = chain.q[i + 1];
+        if (a.y <= p.y && p.y < b.y && orient2d(a, b, p) > 0) ++sum;
+        if (b.y <= p.y && p.y < a.y && orient2d(a, b, p) < 0) --sum;
+      }
+    }
+  }
+  return sum;
+}
+
+struct Segment {
+  VertexId va, vb;
+  Vec2 a, b;
+};
+
+/// Whether two segments may not be in one input, by definition.
+bool in_conflict(const Segment& s, const Segment& t) {
+  const auto same = [](VertexId v, Vec2 p, VertexId w, Vec2 q) { return v == w && p == q; };
+  const bool aa = same(s.va, s.a, t.va, t.a), ab = same(s.va, s.a, t.vb, t.b);
+  const bool ba = same(s.vb, s.b, t.va, t.a), bb = same(s.vb, s.b, t.vb, t.b);
+  if (aa && bb) return true;
+  if (ab && ba) return false;
+  const auto beyond = [](Vec2 common, Vec2 p, Vec2 q) {
+    return oracle::on_segment(common, p, q) || oracle::on_segment(common, q, p);
+  };
+  if (aa) return beyond(s.a, s.b, t.b);
+  if (ab) return beyond(s.a, s.b, t.a);
+  if (ba) return beyond(s.b, s.a, t.b);
+  if (bb) return beyond(s.b, s.a, t.a);
+  return oracle::segments_meet(s.a, s.b, t.a, t.b);
+}
+
+TEST(Build, RandomLoopsOnACoarseGrid) {
+  std::mt19937 random(17);
+  int good = 0;
+  for (int round = 0; round < 4000; ++round) {
+    // Vertices are the points of a 5 by 5 grid, so that loops often touch at vertices; a few points have a second
+    // vertex.
+    FaceInput input;
+    std::vector<Segment> segments;
+    const int loops = 1 + static_cast<int>(random() % 2);
+    for (int l = 0; l < loops; ++l) {
+      ChainInput chain{l, {}, {}, false};
+      const std::size_t count = 3 + random() % 4;
+      for (std::size_t k = 0; k < count; ++k) {
+        const auto i = static_cast<std::uint32_t>(random() % 5), j = static_cast<std::uint32_t>(random() % 5);
+        chain.vertices.push_back(VertexId(i + 5 * j + (random() % 50 == 0 ? 100 : 0)));
+        chain.q.push_back({0.25 * i - 0.5, 0.25 * j - 0.5});
+      }
+      chain.vertices.push_back(chain.vertices.front());
+      chain.q.push_back(chain.q.front());
+      for (std::size_t k = 0; k < count; ++k) {
+        segments.push_back({chain.vertices[k], chain.vertices[k + 1], chain.q[k], chain.q[k + 1]});
+      }
+      input.loops.push_back({{chain}, false});
+    }
+    bool crossing = false;
+    for (const Segment& s : segments) crossing = crossing || (s.a == s.b && s.va != s.vb);
+    std::erase_if(segments, [](const Segment& s) { return s.a == s.b; });
+    for (std::size_t i = 0; i < segments.size(); ++i) {
+      for (std::size_t j = 0; j < i; ++j) crossing = crossing || in_conflict(segments[i], segments[j]);
+    }
+    FaceMesh mesh;
+    const auto faults = mesh.build(input);
+    const bool only_nesting = std::all_of(faults.begin(), faults.end(), [](const LoopFault& f) {
+      return f.what == "inverted" || f.what == "not nested" || f.what == "no domain";
+    });
+    ASSERT_EQ(crossing, !only_nesting);
+    if (crossing) continue;
+    bool nested = true;
+    double inside = 0;
+    for (int i = -40; i < 40; ++i) {
+      for (int j = -40; j < 40; ++j) {
+        const Vec2 p{(i + 0.5) / 64 + 0x1p-20, (j + 0.5) / 64 + 0x1p-21};
+        const int w = winding(input, p);
+        nested = nested && (w == 0 || w == 1);
+        inside += w == 1;
+        if (faults.empty()) {
+          ASSERT_EQ(w == 1, mesh.locate(p).has_value());
+        }
+      }
+    }
+    if (!nested) {
+      EXPECT_FALSE(faults.empty());
+    }
+    if (!faults.empty()) continue;
+    ++good;
+    expect_valid(mesh);
+    EXPECT_NEAR(area(mesh), inside / 4096, 0.03);
+  }
+  EXPECT_GT(good, 20);
 }
 
 TEST(Build, LongConstraintsThroughManyNodes) {

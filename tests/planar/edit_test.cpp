@@ -5,7 +5,7 @@
 #include <map>
 #include <random>
 
-#include "oracle/naive_planar.h"
+#include "oracle/planar_naive.h"
 #include "planar/face_mesh.h"
 #include "planar/shapes.h"
 #include "predicates/predicates.h"
