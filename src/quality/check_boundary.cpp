@@ -127,7 +127,7 @@ void check_edges(const Mesh& mesh, Topology& topology, Findings& findings) {
     }
     if (e.region != kOutside) {
       --topology.euler[e.region];
-      if (j - i > 2) topology.crowded_edges.push_back({e.a, e.b, e.region, static_cast<std::uint32_t>(j - i)});
+      if (j - i > 2) topology.crowded_edges.push_back({e.a, e.b, e.region, j - i});
     }
     i = j;
   }
@@ -152,6 +152,12 @@ void count_vertices_and_facets(const Mesh& mesh, Topology& topology) {
 
 }  // namespace
 
+std::string describe(const Mesh& mesh, const CrowdedEdge& edge) {
+  return fmt::format("edge {} {} has {} boundary facets of solid {}, at {}", edge.a, edge.b, edge.facets,
+                     mesh.solids[edge.solid].cad_id,
+                     place(0.5 * (vec(mesh.points[edge.a]) + vec(mesh.points[edge.b]))));
+}
+
 void check_triangles(const Mesh& mesh, Topology& topology, Findings& findings) {
   TriangleCheck check(mesh, topology, findings);
   for (std::uint32_t i = 0; i < mesh.triangles.size(); ++i) check.check(i);
@@ -173,11 +179,8 @@ void check_closedness(const Mesh& mesh, const Model* model, Topology& topology, 
     findings.add("empty_solid", Severity::error, [&] { return fmt::format("solid {}", mesh.solids[s].cad_id); });
   }
   if (model != nullptr) return;
-  for (const auto& [a, b, solid, count] : topology.crowded_edges) {
-    findings.add("crowded_edge", Severity::warning, [&] {
-      return fmt::format("edge {} {} has {} boundary facets of solid {}, at {}", a, b, count, mesh.solids[solid].cad_id,
-                         place(0.5 * (vec(mesh.points[a]) + vec(mesh.points[b]))));
-    });
+  for (const CrowdedEdge& edge : topology.crowded_edges) {
+    findings.add("crowded_edge", Severity::warning, [&] { return describe(mesh, edge); });
   }
 }
 

@@ -17,7 +17,7 @@
 namespace curvetet::checks {
 namespace {
 
-constexpr int kGrid1 = 17;          ///< samples per direction for guesses
+constexpr int kGuessSamples = 17;   ///< samples per direction for guesses
 constexpr int kCoverSamples = 8;    ///< per direction, for coverage
 constexpr int kSamplesPerUse = 24;  ///< of a loop's parameter curves
 constexpr std::size_t kGridGuesses = 4;
@@ -187,8 +187,9 @@ std::vector<Vec2> FaceTask::domain_samples(const Model& model, const ModelFace& 
   }
   std::vector<Vec2> samples;
   for (int i = 0; i < kCoverSamples * kCoverSamples; ++i) {
-    const double s = (i % kCoverSamples + 0.5) / kCoverSamples, t = (i / kCoverSamples + 0.5) / kCoverSamples;
-    const Vec2 p{face.low.x + s * extent.x, face.low.y + t * extent.y};
+    const int row = i / kCoverSamples, column = i % kCoverSamples;
+    const Vec2 p{face.low.x + (column + 0.5) / kCoverSamples * extent.x,
+                 face.low.y + (row + 0.5) / kCoverSamples * extent.y};
     int turns = 0;
     const bool clear = std::all_of(polygons.begin(), polygons.end(), [&](const std::vector<Vec2>& polygon) {
       const std::optional<int> w = winding(polygon, p, extent);
@@ -228,8 +229,10 @@ void FaceProjector::consider(Vec3 point, Vec2 guess, std::optional<Foot>& best) 
 }
 
 void FaceProjector::sample() {
-  for (int i = 0; i < kGrid1 * kGrid1; ++i) {
-    const double s = static_cast<double>(i % kGrid1) / (kGrid1 - 1), t = static_cast<double>(i / kGrid1) / (kGrid1 - 1);
+  for (int i = 0; i < kGuessSamples * kGuessSamples; ++i) {
+    const int row = i / kGuessSamples, column = i % kGuessSamples;
+    const double s = static_cast<double>(column) / (kGuessSamples - 1),
+                 t = static_cast<double>(row) / (kGuessSamples - 1);
     const Vec2 uv{face_.low.x + s * (face_.high.x - face_.low.x), face_.low.y + t * (face_.high.y - face_.low.y)};
     sample_uv_.push_back(uv);
     sample_value_.push_back(surface_->value(uv));

@@ -185,14 +185,11 @@ void check_crowded_edges(const MeshOnModel& m, Findings& findings) {
     const auto& [a, b] = m.mesh.segments[i];
     segments.emplace(std::array{std::min(a, b), std::max(a, b)}, m.edges[m.mesh.segment_edge[i]]);
   }
-  for (const auto& [a, b, solid, count] : m.topology.crowded_edges) {
-    const auto found = segments.find({a, b});
+  for (const CrowdedEdge& edge : m.topology.crowded_edges) {
+    const auto found = segments.find({edge.a, edge.b});
     const bool on_edge = found != segments.end() && found->second.valid();
     if (on_edge && m.model.edges[found->second].faces.size() > 2) continue;
-    findings.add("crowded_edge", Severity::error, [&] {
-      return fmt::format("edge {} {} has {} boundary facets of solid {}, at {}", a, b, count,
-                         m.mesh.solids[solid].cad_id, place(vec(m.mesh.points[a])));
-    });
+    findings.add("crowded_edge", Severity::error, [&] { return describe(m.mesh, edge); });
   }
 }
 

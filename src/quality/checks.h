@@ -50,6 +50,14 @@ struct BoundaryFacet {
   std::uint32_t triangle = kOutside;  ///< the labelled triangle on it; kOutside if none
 };
 
+/// An edge of more than two boundary facets of one solid.
+struct CrowdedEdge {
+  std::uint32_t a = 0, b = 0;  ///< ascending
+  std::uint32_t solid = 0;
+  std::size_t facets = 0;
+};
+std::string describe(const Mesh& mesh, const CrowdedEdge& edge);
+
 /// What the first checks find out and the later ones use. Only made for meshes whose arrays and indices are sound.
 struct Topology {
   std::vector<std::int8_t> tet_sign;             ///< exact
@@ -59,8 +67,7 @@ struct Topology {
   std::vector<std::uint8_t> used;                ///< by point: in a tet
   std::uint32_t tet_components = 0;              ///< joined through facets
   std::vector<std::uint32_t> region_components;  ///< by solid: pieces joined through facets between tets of the solid
-  /// Edges of more than two boundary facets of one solid: {smaller, larger vertex, solid, facets}.
-  std::vector<std::array<std::uint32_t, 4>> crowded_edges;
+  std::vector<CrowdedEdge> crowded_edges;
   std::vector<int> euler;  ///< by solid: V - E + F of its boundary
 };
 
