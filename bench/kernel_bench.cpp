@@ -92,7 +92,7 @@ void build(benchmark::State& state) {
 BENCHMARK(build)->ArgsProduct({{0, 1, 2, 3, 4, 5}, {100000}})->Unit(benchmark::kMillisecond);
 BENCHMARK(build)->Args({0, 1000000})->Unit(benchmark::kMillisecond);
 
-/// find_cavity and commit with all their judging, as refinement uses them: hints are near.
+/// find_cavity and commit with all their judging, as refinement uses them: the hint is a tet at a near vertex.
 void insert_one_by_one(benchmark::State& state) {
   const std::vector<Vec3> points = make_cloud(Cloud::cube, 40000);
   const VertexStore store = make_store(points);
@@ -102,10 +102,13 @@ void insert_one_by_one(benchmark::State& state) {
     state.PauseTiming();
     Tetrahedralization mesh(store, 1);
     if (!mesh.build(std::span(ids).first(20000), context).ok()) state.SkipWithError("no tetrahedralization");
-    std::vector<TetId> hints(ids.size());
-    for (std::size_t k = 20000; k < ids.size(); ++k) hints[k] = mesh.locate(points[k]);
+    std::vector<VertexId> near(ids.size());
+    for (std::size_t k = 20000; k < ids.size(); ++k) {
+      const TetId t = mesh.locate(points[k]);
+      near[k] = mesh.complex().vertex(t, mesh.complex().vertex(t, 0) == kInfinite ? 1 : 0);
+    }
     state.ResumeTiming();
-    for (std::size_t k = 20000; k < ids.size(); ++k) mesh.insert(ids[k], hints[k]);
+    for (std::size_t k = 20000; k < ids.size(); ++k) mesh.insert(ids[k], mesh.tet_of(near[k]));
   }
   state.counters["points/s"] =
       benchmark::Counter(static_cast<double>(state.iterations()) * 20000, benchmark::Counter::kIsRate);

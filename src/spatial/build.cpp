@@ -111,6 +111,7 @@ class Builder {
     positions_.reserve(order_.size());
     for (const VertexId v : order_) positions_.push_back(store.position(v));
     complex_.reserve(7 * order_.size() + 64);
+    star_builder_.cover_vertices(order_.size());
   }
 
   Status run(const Context& context) {

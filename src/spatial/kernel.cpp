@@ -129,16 +129,6 @@ void StarBuilder::add_tets(TetComplex& complex, VertexId v, std::span<const TetF
   }
 }
 
-std::uint32_t StarBuilder::number_of(VertexId v) {
-  const std::size_t at = v == kInfinite ? 0 : std::size_t{v.value()} + 1;
-  if (numbers_.size() <= at) numbers_.resize(at + at / 2 + 1, 0);
-  std::uint32_t& number = numbers_[at];
-  if (number < named_ && names_[number] == v) return number;
-  number = named_++;
-  names_[number] = v;
-  return number;
-}
-
 void StarBuilder::glue_by_table(TetComplex& complex, std::span<const TetId> star) {
   std::array<std::array<std::uint32_t, 3>, 2 * kMostVertices> numbers;
   named_ = 0;

@@ -102,6 +102,10 @@ class StarBuilder {
   /// `boundary`.
   void replace(TetComplex& complex, Marks& marks, VertexId v, std::span<const TetId> tets,
                std::span<const TetFacet> boundary, std::vector<TetId>& star);
+  /// Makes room for vertices with ids below n; to be called before.
+  void cover_vertices(std::size_t n) {
+    if (numbers_.size() < n + 2) numbers_.resize(n + 2, 0);
+  }
   std::size_t bytes() const { return numbers_.capacity() * sizeof(std::uint32_t); }
 
  private:
@@ -111,9 +115,16 @@ class StarBuilder {
   void glue_by_table(TetComplex& complex, std::span<const TetId> star);
   void glue_by_turning(TetComplex& complex, const Marks& marks, std::span<const TetFacet> boundary,
                        std::span<const TetId> star) const;
-  std::uint32_t number_of(VertexId v);
+  std::uint32_t number_of(VertexId v) {
+    std::uint32_t& number = numbers_[v.value() + 2U];  // the infinite vertex wraps to 0
+    if (number >= named_ || names_[number] != v) {
+      number = named_++;
+      names_[number] = v;
+    }
+    return number;
+  }
 
-  /// numbers_[v] is v's number if names_ agrees; nothing has to be cleared. The infinite vertex is at the end.
+  /// numbers_[v + 2] is v's number if names_ agrees; nothing has to be cleared.
   std::vector<std::uint32_t> numbers_;
   std::array<VertexId, kMostVertices> names_{};
   std::uint32_t named_ = 0;
