@@ -15,6 +15,9 @@ namespace {
 constexpr int next(int i) { return i == 2 ? 0 : i + 1; }
 constexpr int previous(int i) { return i == 0 ? 2 : i - 1; }
 
+// A hint farther away than this many triangles is worth less than a look at some triangles all over the mesh.
+constexpr std::size_t kHintedSteps = 64;
+
 int local_of(const FaceTriangle& t, NodeId n) {
   return t.node[0] == n ? 0 : t.node[1] == n ? 1 : t.node[2] == n ? 2 : -1;
 }
@@ -90,9 +93,9 @@ bool FaceMesh::contains(TriangleId t, Vec2 q) const {
 
 // A walk by orientation can cycle in a triangulation that is not Delaunay; the edge it tries first changes with the
 // step, and the number of steps is bounded by the number of triangles.
-FaceMesh::WalkEnd FaceMesh::walk(Vec2 q, TriangleId from, Stop stop) const {
+FaceMesh::WalkEnd FaceMesh::walk(Vec2 q, TriangleId from, Stop stop, std::size_t steps) const {
   TriangleId t = from, came_from;
-  for (std::size_t step = 0; step < triangles_.size() + 8; ++step) {
+  for (std::size_t step = 0; step < steps; ++step) {
     const FaceTriangle& f = triangles_[t];
     std::optional<FaceEdge> blocked;
     TriangleId onward;
@@ -116,7 +119,9 @@ FaceMesh::WalkEnd FaceMesh::walk(Vec2 q, TriangleId from, Stop stop) const {
   return {};
 }
 
-FaceMesh::WalkEnd FaceMesh::walk(Vec2 q, TriangleId from) const { return walk(q, from, Stop::at_constraints); }
+FaceMesh::WalkEnd FaceMesh::walk(Vec2 q, TriangleId from) const {
+  return walk(q, from, Stop::at_constraints, longest_walk());
+}
 
 // The nearest of about the cube root of all triangles (Mücke, Saias and Zhu, "Fast randomized point location", 1999),
 // taken at equal steps of the numbering instead of at random.
@@ -167,17 +172,20 @@ FaceMesh::Ray FaceMesh::cast(Vec2 q) const {
 }
 
 std::optional<TriangleId> FaceMesh::locate(Vec2 q, TriangleId hint) const {
-  const bool usable = hint.value() < triangles_.size() && triangles_[hint].alive();
-  const TriangleId from = usable ? hint : nearby_triangle(q);
+  if (hint.value() < triangles_.size() && triangles_[hint].alive()) {
+    const WalkEnd end = walk(q, hint, Stop::at_boundary, kHintedSteps);
+    if (end.triangle) return end.triangle;
+  }
+  const TriangleId from = nearby_triangle(q);
   if (!from.valid()) return std::nullopt;
-  const WalkEnd end = walk(q, from, Stop::at_boundary);
+  const WalkEnd end = walk(q, from, Stop::at_boundary, longest_walk());
   if (end.triangle) return end.triangle;
   const Ray ray = cast(q);
   const std::optional<SegmentGrid::Entry> seen = ray.touched ? ray.touched : ray.first;
   if (!seen || (!ray.touched && ray.winding == 0)) return std::nullopt;
   const std::optional<FaceEdge> edge = find_edge(NodeId(seen->a), NodeId(seen->b));
   CURVETET_CHECK(edge.has_value());
-  const WalkEnd again = walk(q, edge->triangle, Stop::at_boundary);
+  const WalkEnd again = walk(q, edge->triangle, Stop::at_boundary, longest_walk());
   return again.triangle ? again.triangle : scan(q);
 }
 

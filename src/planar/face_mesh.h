@@ -176,7 +176,8 @@ class FaceMesh {
   // face_mesh.cpp
   Vec2 point(NodeId n) const { return nodes_[n].q; }
   bool has_edge(FaceEdge e) const;
-  WalkEnd walk(Vec2 q, TriangleId from, Stop stop) const;
+  WalkEnd walk(Vec2 q, TriangleId from, Stop stop, std::size_t steps) const;
+  std::size_t longest_walk() const { return triangles_.size() + 8; }
   TriangleId nearby_triangle(Vec2 q) const;
   Ray cast(Vec2 q) const;
   std::optional<TriangleId> scan(Vec2 q) const;
