@@ -12,6 +12,9 @@ namespace curvetet {
 
 namespace {
 
+// A cure takes a few points per crossing; many more mean that refinement does not separate what crosses.
+constexpr std::size_t kPointsPerPair = 8;
+
 class CrossingCure {
  public:
   CrossingCure(Conjoint& conjoint, const CrossingOptions& options, Context& context)
@@ -25,9 +28,14 @@ class CrossingCure {
       if (context_.should_stop()) return context_.stop_error("surface crossings");
       triangles_ = surface_triangles(conjoint_.boundary());
       const auto pairs = crossing_pairs(conjoint_.vertices(), triangles_);
-      if (result_.rounds == 0) result_.first_pairs = pairs.size();
+      if (result_.rounds == 0) {
+        result_.first_pairs = pairs.size();
+        budget_ = kPointsPerPair * pairs.size() + triangles_.size();
+      }
+      context_.log(LogLevel::debug, fmt::format("crossings, round {}: {} pairs of {} triangles", result_.rounds,
+                                                pairs.size(), triangles_.size()));
       if (pairs.empty()) return result_;
-      if (result_.rounds == options_.rounds || !refine(pairs)) {
+      if (result_.rounds == options_.rounds || result_.points > budget_ || !refine(pairs)) {
         for (const auto& [i, j] : pairs) report(i, j);
         return result_;
       }
@@ -112,6 +120,7 @@ class CrossingCure {
   Context& context_;
   SurfaceRefinement refinement_;
   CrossingResult result_;
+  std::size_t budget_ = 0;
   std::vector<SurfaceTriangle> triangles_;
   std::set<std::pair<FaceId, FaceId>> reported_;
 };

@@ -33,7 +33,6 @@ class March {
     seed();
     if (result_.missing.empty()) {
       result_.complete = true;
-      result_.triangles = marked_;
       return result_;
     }
     collect_nodes();
@@ -56,24 +55,39 @@ class March {
     return !owner.valid() || owner == face_;
   }
 
+  // Looks at t_ps alone first: most faces of most bodies need no march, and no maps.
   void seed() {
-    std::set<FacetKey> taken;
+    std::vector<std::pair<FacetKey, TriangleId>> present;
+    std::vector<TriangleId> collapsed;
     for (std::size_t i = 0; i < mesh_.triangle_slots(); ++i) {
       const TriangleId id(i);
-      const FaceTriangle& t = mesh_.triangle(id);
-      if (!t.alive()) continue;
-      require_edges(t);
+      if (!mesh_.triangle(id).alive()) continue;
       const std::array<VertexId, 3> v = mesh_.vertices(id);
-      const bool collapsed = v[0] == v[1] || v[1] == v[2] || v[2] == v[0];
-      if (!collapsed) ++result_.total;
-      const bool present = collapsed || (usable(v[0], v[1], v[2]) && taken.insert(facet_key(v[0], v[1], v[2])).second);
-      if (present) {
-        result_.seeds += collapsed ? 0U : 1U;
-        mark(t.node);
-      } else {
-        result_.missing.push_back(id);
+      if (v[0] == v[1] || v[1] == v[2] || v[2] == v[0]) {
+        collapsed.push_back(id);
+        continue;
       }
+      ++result_.total;
+      if (usable(v[0], v[1], v[2]))
+        present.emplace_back(facet_key(v[0], v[1], v[2]), id);
+      else
+        result_.missing.push_back(id);
     }
+    std::sort(present.begin(), present.end());
+    for (std::size_t i = 0; i < present.size(); ++i)
+      if (i > 0 && present[i].first == present[i - 1].first) result_.missing.push_back(present[i].second);
+    std::sort(result_.missing.begin(), result_.missing.end());
+    result_.seeds = result_.total - result_.missing.size();
+    if (!result_.missing.empty()) mark_present(present, collapsed);
+  }
+
+  void mark_present(const std::vector<std::pair<FacetKey, TriangleId>>& present,
+                    const std::vector<TriangleId>& collapsed) {
+    for (std::size_t i = 0; i < mesh_.triangle_slots(); ++i)
+      if (mesh_.triangle(TriangleId(i)).alive()) require_edges(mesh_.triangle(TriangleId(i)));
+    for (TriangleId id : collapsed) mark(mesh_.triangle(id).node);
+    for (std::size_t i = 0; i < present.size(); ++i)
+      if (i == 0 || present[i].first != present[i - 1].first) mark(mesh_.triangle(present[i].second).node);
     seed_count_ = marked_.size();
   }
 

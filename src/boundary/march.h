@@ -21,8 +21,9 @@ struct MarchResult {
   bool complete = false;  ///< T_Γ found, requirements I-VI hold
   std::size_t seeds = 0;  ///< triangles of t_ps that are facets
   std::size_t total = 0;  ///< triangles of t_ps with three different vertices
-  std::vector<NodeTriple>
-      triangles;  ///< of the face, over nodes: T_Γ if complete; else t_ps with the holes that closed replaced
+  /// Of the face, over nodes: T_Γ if complete, else t_ps with the holes that closed replaced. Empty if nothing was
+  /// missing.
+  std::vector<NodeTriple> triangles;
   std::vector<TriangleId> missing;  ///< triangles of t_ps that are no facets (before anything is replaced)
   std::vector<StuckEdge> stuck;
 };
