@@ -6,14 +6,12 @@
 // this needs neither.
 #include <algorithm>
 
+#include "planar/corners.h"
 #include "planar/face_mesh.h"
 #include "predicates/predicates.h"
 
 namespace curvetet {
 namespace {
-
-constexpr int next(int i) { return i == 2 ? 0 : i + 1; }
-constexpr int previous(int i) { return i == 0 ? 2 : i - 1; }
 
 /// A directed edge of the cavity's rim, or of a constraint within it.
 struct RimEdge {

@@ -3,15 +3,13 @@
 // enough that boundary edges do not cross and that one triangle at each boundary loop overlaps no other.
 #include <algorithm>
 
+#include "planar/corners.h"
 #include "planar/face_mesh.h"
 #include "planar/loops.h"
 #include "predicates/predicates.h"
 
 namespace curvetet {
 namespace {
-
-constexpr int next(int i) { return i == 2 ? 0 : i + 1; }
-constexpr int previous(int i) { return i == 0 ? 2 : i - 1; }
 
 using Points = std::array<Vec2, 3>;
 

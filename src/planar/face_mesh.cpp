@@ -7,13 +7,11 @@
 #include <cmath>
 #include <tuple>
 
+#include "planar/corners.h"
 #include "predicates/predicates.h"
 
 namespace curvetet {
 namespace {
-
-constexpr int next(int i) { return i == 2 ? 0 : i + 1; }
-constexpr int previous(int i) { return i == 0 ? 2 : i - 1; }
 
 // A hint farther away than this many triangles is worth less than a look at some triangles all over the mesh.
 constexpr std::size_t kHintedSteps = 64;

@@ -4,16 +4,11 @@
 // does not.
 #include <algorithm>
 
+#include "planar/corners.h"
 #include "planar/face_mesh.h"
 #include "predicates/predicates.h"
 
 namespace curvetet {
-namespace {
-
-constexpr int next(int i) { return i == 2 ? 0 : i + 1; }
-constexpr int previous(int i) { return i == 0 ? 2 : i - 1; }
-
-}  // namespace
 
 PlanarRefusal FaceMesh::judge_insert(Vec2 q, TriangleId triangle) const {
   if (triangle.value() >= triangles_.size() || !triangles_[triangle].alive()) return PlanarRefusal::outside;

@@ -1,14 +1,12 @@
 // Larger changes of connectivity: a node taken out, all triangles replaced, new loops under old interior nodes.
 #include <algorithm>
 
+#include "planar/corners.h"
 #include "planar/face_mesh.h"
 #include "predicates/predicates.h"
 
 namespace curvetet {
 namespace {
-
-constexpr int next(int i) { return i == 2 ? 0 : i + 1; }
-constexpr int previous(int i) { return i == 0 ? 2 : i - 1; }
 
 struct DirectedEdge {
   NodeId a, b;

@@ -7,14 +7,12 @@
 #include <algorithm>
 #include <cmath>
 
+#include "planar/corners.h"
 #include "planar/face_mesh.h"
 #include "predicates/predicates.h"
 
 namespace curvetet {
 namespace {
-
-constexpr int next(int i) { return i == 2 ? 0 : i + 1; }
-constexpr int previous(int i) { return i == 0 ? 2 : i - 1; }
 
 /// A triangle that turns left.
 struct Corner {

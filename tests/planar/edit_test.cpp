@@ -333,6 +333,40 @@ TEST(Rebuild, KeepsInteriorNodesThatStayInside) {
   expect_valid(mesh);
 }
 
+/// Features of a few grid steps within a domain of size one.
+TEST(Insert, TinyFeatures) {
+  const double g = 0x1p-42;
+  FaceInput input{{closed_loop(rectangle(-0.5, -0.5, 0.5, 0.5), 0)}, {}};
+  input.loops.push_back(closed_loop(reversed(rectangle(0.5 - 3 * g, -0.25, 0.5 - g, 0.25)), 10, 1));  // nearly tangent
+  input.loops.push_back(closed_loop(reversed(rectangle(0, 0, g, g)), 20, 2));
+  input.loops.push_back(open_chain({{30, {-4 * g, 0}}, {31, {-2 * g, g}}, {32, {-0.4, 0.3}}}, 3));
+  FaceMesh mesh = built(input);
+  expect_valid(mesh);
+  const auto wanted = delaunay(mesh);
+  std::mt19937 random(5);
+  std::vector<TriangleId> changed;
+  for (std::uint32_t k = 0; k < 300; ++k) {
+    const double scale = std::ldexp(g, static_cast<int>(random() % 42));
+    const auto draw = [&] { return on_grid(scale * (static_cast<double>(random() % 2001) / 1000 - 1)); };
+    const double x = draw();
+    const Vec2 q{x, draw()};
+    const auto at = mesh.locate(q);
+    if (at && mesh.judge_insert(q, *at) == PlanarRefusal::none)
+      mesh.insert(VertexId(1000 + k), q, *at, wanted, changed);
+    const auto edges = constrained_edges(mesh);
+    const FaceEdge edge = edges[random() % edges.size()];
+    const auto [a, b] = ends(mesh, edge);
+    const Vec2 m =
+        on_grid(0.5 * (mesh.node(a).q + mesh.node(b).q)) + g * Vec2{static_cast<double>(random() % 3) - 1, 0};
+    const bool clear = oracle::split_is_clear(mesh, edge, m);
+    EXPECT_EQ(mesh.split(edge, VertexId(2000 + k), m, wanted, changed).valid(), clear);
+    if (k % 10 == 0) expect_valid(mesh);
+    ASSERT_FALSE(HasFailure());
+  }
+  expect_valid(mesh);
+  EXPECT_EQ(oracle::count_not_locally_delaunay(mesh), 0U);
+}
+
 TEST(Determinism, SameOperationsSameMesh) {
   const auto run = [] {
     FaceMesh mesh = built(plate());
