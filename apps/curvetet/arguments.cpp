@@ -1,0 +1,312 @@
+// CLI11 describes and parses; what it cannot express (which format an output gets, that outputs differ from the input,
+// sizes of named entities) is checked here, before any work. Ranges of numbers are the library's business.
+#include "arguments.h"
+
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <charconv>
+#include <filesystem>
+#include <iostream>
+#include <set>
+
+#include "curvetet/curvetet.h"
+
+namespace curvetet::cli {
+
+namespace {
+
+constexpr const char* kFooter = R"(Lengths are in the unit of the output (--unit; by default that of the input).
+
+Examples:
+  curvetet mesh bracket.step -o bracket.msh
+  curvetet mesh bracket.step -o bracket.msh -o bracket.vtu --size 5 --report bracket.json
+  curvetet mesh pump.step -o pump.msh --size 4 --face-size inlet=1 --face-size 12=0.5
+  curvetet info bracket.step
+  curvetet check bracket.msh bracket.step
+  curvetet picture bracket.msh -o bracket.png --cut x=0.5
+
+Exit codes:
+  0   done, and the mesh is valid
+  2   the command line is wrong
+  3   the input cannot be meshed, or a file cannot be read or written
+  4   cancelled, or out of time or memory
+  5   a mesh was made but is not valid (written only with --keep-invalid)
+  70  internal error)";
+
+/// What the options of `mesh` say before they are checked together.
+struct RawMesh {
+  std::vector<std::string> outputs, face_sizes, edge_sizes, solid_sizes;
+  std::string format, recovery = "conjoint";
+  bool parametric = false, no_gaps = false, no_refine = false, no_improve = false, no_isolate = false;
+};
+
+struct RawPicture {
+  std::string cut, size;
+};
+
+bool read_number(std::string_view text, double& value) {
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  return error == std::errc() && end == text.data() + text.size();
+}
+
+[[noreturn]] void refuse(const std::string& message) { throw CLI::ValidationError(message); }
+
+void add_local_sizes(const std::vector<std::string>& texts, LocalSize::Kind kind, std::vector<LocalSize>& sizes) {
+  for (const std::string& text : texts) {
+    const std::size_t equals = text.rfind('=');
+    LocalSize local{kind, text.substr(0, equals), 0};
+    if (equals == std::string::npos || equals == 0 || !read_number(text.substr(equals + 1), local.size)) {
+      refuse(fmt::format("'{}' is not of the form ID_OR_NAME=SIZE", text));
+    }
+    sizes.push_back(local);
+  }
+}
+
+bool is_msh(MeshFormat format) {
+  return format == MeshFormat::msh41_binary || format == MeshFormat::msh41_ascii || format == MeshFormat::msh22;
+}
+
+/// The ending decides; --format chooses among the kinds of .msh, and decides where the ending is unknown.
+WriteOptions write_options(const std::string& path, const RawMesh& raw) {
+  WriteOptions options;
+  options.parametric_nodes = raw.parametric;
+  const Result<MeshFormat> by_ending = format_of(path);
+  if (raw.format.empty()) {
+    if (!by_ending) refuse(by_ending.error().message + "; " + by_ending.error().hint + ", or say --format");
+    options.format = by_ending.value();
+    return options;
+  }
+  const Result<MeshFormat> named = format_named(raw.format);
+  if (!named) refuse(named.error().message + "; " + named.error().hint);
+  const bool ending_leaves_choice = !by_ending || by_ending.value() == MeshFormat::msh41_binary;
+  const bool named_fits = !by_ending || is_msh(named.value());
+  options.format = ending_leaves_choice && named_fits ? named.value() : by_ending.value();
+  return options;
+}
+
+/// The same place on the disk, whether it exists yet or not.
+std::string place_of(const std::string& path) {
+  std::error_code ignored;
+  return std::filesystem::weakly_canonical(std::filesystem::absolute(path, ignored), ignored).string();
+}
+
+/// No file is written over the input or over another output.
+void refuse_collisions(const MeshCommand& command) {
+  std::set<std::string> taken{place_of(command.input)};
+  for (const Output& output : command.outputs) {
+    if (!taken.insert(place_of(output.path)).second) refuse(output.path + " is named twice, or is the input itself");
+  }
+  if (!command.report.empty() && !taken.insert(place_of(command.report)).second) {
+    refuse(command.report + " is named twice, or is the input itself");
+  }
+}
+
+void finish_mesh(const RawMesh& raw, MeshCommand& command) {
+  bool format_used = raw.format.empty();
+  for (const std::string& path : raw.outputs) {
+    command.outputs.push_back({path, write_options(path, raw)});
+    format_used = format_used || command.outputs.back().options.format == format_named(raw.format).value();
+  }
+  if (!format_used) refuse(fmt::format("--format {} does not fit the ending of any output", raw.format));
+  refuse_collisions(command);
+  add_local_sizes(raw.face_sizes, LocalSize::Kind::face, command.options.local_sizes);
+  add_local_sizes(raw.edge_sizes, LocalSize::Kind::edge, command.options.local_sizes);
+  add_local_sizes(raw.solid_sizes, LocalSize::Kind::solid, command.options.local_sizes);
+  Options& options = command.options;
+  options.recovery = raw.recovery == "paper" ? RecoveryMode::paper : RecoveryMode::conjoint;
+  options.gaps = !raw.no_gaps;
+  options.refine_interior = !raw.no_refine;
+  options.improve = !raw.no_improve;
+  options.isolate_cad = !raw.no_isolate;
+}
+
+void finish_picture(const RawPicture& raw, PictureCommand& command) {
+  if (!raw.cut.empty()) {
+    const std::size_t axis = std::string_view("xyz").find(raw.cut[0]);
+    PictureCut cut;
+    if (axis == std::string_view::npos || raw.cut.size() < 3 || raw.cut[1] != '=' ||
+        !read_number(std::string_view(raw.cut).substr(2), cut.fraction) || !(cut.fraction >= 0 && cut.fraction <= 1)) {
+      refuse(fmt::format("--cut takes x, y or z and a fraction of the box from 0 to 1, as x=0.5, not '{}'", raw.cut));
+    }
+    cut.axis = static_cast<int>(axis);
+    command.options.cut = cut;
+  }
+  if (!raw.size.empty()) {
+    const std::size_t times = raw.size.find('x');
+    double width = 0, height = 0;
+    if (times == std::string::npos || !read_number(std::string_view(raw.size).substr(0, times), width) ||
+        !read_number(std::string_view(raw.size).substr(times + 1), height) || !(width >= 16 && width <= 8192) ||
+        !(height >= 16 && height <= 8192)) {
+      refuse(fmt::format("--size takes width and height from 16 to 8192 pixels, as 1200x900, not '{}'", raw.size));
+    }
+    command.options.width = static_cast<int>(width);
+    command.options.height = static_cast<int>(height);
+  }
+}
+
+/// A repeatable option that takes one value each time, so that it never swallows the input.
+void add_repeatable(CLI::App& app, const std::string& name, std::vector<std::string>& values, const std::string& type,
+                    const std::string& help, bool required = false) {
+  app.add_option(name, values, help)->allow_extra_args(false)->type_name(type)->required(required);
+}
+
+void describe_sizes(CLI::App& app, RawMesh& raw, Options& options) {
+  const std::string group = "Sizes";
+  const auto length = [&](const char* name, std::optional<double>& value, const char* help) {
+    app.add_option(name, value, help)->type_name("LENGTH")->group(group);
+  };
+  length("--size", options.size, "largest edge length; default: a tenth of the body's diagonal");
+  length("--min-size", options.min_size, "floor of derived sizes; default: a thousandth of the size");
+  app.add_option("--curvature", options.curvature, "elements per full turn of a curve or surface; 0: off")
+      ->type_name("NUMBER")
+      ->capture_default_str()
+      ->group(group);
+  length("--chord-height", options.chord_height, "largest distance of a chord to its arc; default: off");
+  app.add_option("--grading", options.grading, "growth of the size per length")
+      ->type_name("NUMBER")
+      ->capture_default_str()
+      ->group(group);
+  app.add_flag("--no-gaps", raw.no_gaps, "do not look at gaps and thin walls when choosing sizes")->group(group);
+  add_repeatable(app, "--face-size", raw.face_sizes, "ID_OR_NAME=LENGTH", "size on a face; may be repeated");
+  add_repeatable(app, "--edge-size", raw.edge_sizes, "ID_OR_NAME=LENGTH", "size on an edge; may be repeated");
+  add_repeatable(app, "--solid-size", raw.solid_sizes, "ID_OR_NAME=LENGTH", "size in a solid; may be repeated");
+  for (const char* name : {"--face-size", "--edge-size", "--solid-size"}) app.get_option(name)->group(group);
+}
+
+void describe_stages(CLI::App& app, RawMesh& raw, Options& options) {
+  const std::string group = "Stages";
+  app.add_option("--recovery", raw.recovery, "how faces are recovered: conjoint, or the paper to the letter")
+      ->check(CLI::IsMember({"conjoint", "paper"}))
+      ->type_name("MODE")
+      ->capture_default_str()
+      ->group(group);
+  app.add_flag("--no-refine", raw.no_refine, "no points inside the solids")->group(group);
+  app.add_flag("--no-improve", raw.no_improve, "leave the quality of the tetrahedra as it is")->group(group);
+  app.add_option("--radius-edge", options.radius_edge,
+                 "bound on circumradius over shortest edge, away from the boundary")
+      ->type_name("NUMBER")
+      ->capture_default_str()
+      ->group(group);
+}
+
+void describe_units_and_limits(CLI::App& app, RawMesh& raw, Options& options) {
+  app.add_option("--unit", options.unit, "unit of the output: um, mm, cm, m, inch, ft; default: the input's")
+      ->type_name("UNIT")
+      ->group("Units");
+  app.add_option("--input-unit", options.input_unit, "unit of an input that carries none (BREP); default: mm")
+      ->type_name("UNIT")
+      ->group("Units");
+  const std::string group = "Limits";
+  app.add_option("--threads", options.threads, "0: all cores; the mesh does not depend on it")
+      ->type_name("NUMBER")
+      ->capture_default_str()
+      ->group(group);
+  app.add_option("--seed", options.seed, "of the random choices; same seed, same mesh")
+      ->type_name("NUMBER")
+      ->capture_default_str()
+      ->group(group);
+  app.add_option("--time-limit", options.time_limit, "seconds for the whole run")->type_name("SECONDS")->group(group);
+  app.add_option("--memory-limit", options.memory_limit, "for the mesh's own arrays, as 800M or 4G")
+      ->transform(CLI::AsSizeValue(false))
+      ->type_name("BYTES")
+      ->group(group);
+  app.add_flag("--no-isolate", raw.no_isolate, "read the CAD file in this process, not in a helper")->group(group);
+}
+
+CLI::App* describe_mesh(CLI::App& app, RawMesh& raw, MeshCommand& command) {
+  CLI::App* mesh = app.add_subcommand("mesh", "Mesh a CAD file (STEP, IGES or BREP)");
+  mesh->add_option("INPUT", command.input, "STEP, IGES or BREP file")->required()->type_name("FILE");
+  add_repeatable(*mesh, "-o,--output", raw.outputs, "FILE",
+                 "mesh to write, by its ending: .msh (Gmsh 4.1), .msh2 (Gmsh 2.2), .vtu, .mesh (Medit), .stl; may be "
+                 "repeated",
+                 true);
+  mesh->add_option("--format", raw.format, "for .msh or an unknown ending: msh, msh-ascii, msh22, vtu, mesh, stl")
+      ->type_name("FORMAT");
+  mesh->add_flag("--parametric", raw.parametric,
+                 ".msh: boundary nodes with their parameters as Gmsh's parametric nodes");
+  mesh->add_option("--report", command.report, "JSON report, also written when meshing fails")->type_name("FILE");
+  mesh->add_flag("--keep-invalid", command.keep_invalid, "write the mesh even if the final check finds it invalid");
+  CLI::Option* quiet = mesh->add_flag("-q,--quiet", command.quiet, "say nothing but errors");
+  mesh->add_flag("-v,--verbose", command.verbose, "say more")->excludes(quiet);
+  describe_sizes(*mesh, raw, command.options);
+  describe_stages(*mesh, raw, command.options);
+  describe_units_and_limits(*mesh, raw, command.options);
+  return mesh;
+}
+
+CLI::App* describe_info(CLI::App& app, InfoCommand& command) {
+  CLI::App* info = app.add_subcommand("info", "List the solids, faces and edges of a CAD file, with ids and names");
+  info->add_option("INPUT", command.input, "STEP, IGES or BREP file")->required()->type_name("FILE");
+  info->add_flag("--json", command.json, "as JSON");
+  info->add_option("--input-unit", command.input_unit, "unit of an input that carries none (BREP)")->type_name("UNIT");
+  info->add_flag("!--no-isolate", command.isolate, "read the CAD file in this process, not in a helper");
+  return info;
+}
+
+CLI::App* describe_check(CLI::App& app, CheckCommand& command) {
+  CLI::App* check = app.add_subcommand("check", "Check a mesh, alone or against its CAD file; exit code 5 if invalid");
+  check->add_option("MESH", command.mesh, ".msh, .vtu (of curvetet) or .mesh file")->required()->type_name("FILE");
+  check->add_option("CAD", command.cad, "STEP, IGES or BREP file that the mesh was made from")->type_name("FILE");
+  check->add_flag("--json", command.json, "as JSON");
+  check
+      ->add_option("--unit-scale", command.unit_scale,
+                   "length in the mesh of a unit of the CAD file; default: from the units of both")
+      ->type_name("NUMBER");
+  check->add_option("--input-unit", command.input_unit, "unit of a CAD file that carries none (BREP)")
+      ->type_name("UNIT");
+  check->add_flag("!--no-isolate", command.isolate, "read the CAD file in this process, not in a helper");
+  check->add_option("--threads", command.threads, "0: all cores")->type_name("NUMBER")->check(CLI::Range(0, 4096));
+  return check;
+}
+
+CLI::App* describe_picture(CLI::App& app, RawPicture& raw, PictureCommand& command) {
+  CLI::App* picture = app.add_subcommand("picture", "Draw a mesh to a PNG file");
+  picture->add_option("MESH", command.mesh, ".msh, .vtu (of curvetet) or .mesh file")->required()->type_name("FILE");
+  picture->add_option("-o,--output", command.output, "PNG file to write")->required()->type_name("FILE");
+  picture->add_option("--cut", raw.cut, "cut across an axis at a fraction of the box, as x=0.5")
+      ->type_name("AXIS=FRACTION");
+  picture->add_option("--size", raw.size, "width and height in pixels")->default_str("1200x900")->type_name("WxH");
+  return picture;
+}
+
+}  // namespace
+
+Arguments parse(int argc, char** argv) {
+  CLI::App app("curvetet: valid, conformal, labelled tetrahedral meshes of CAD bodies with curved boundaries.");
+  app.set_version_flag("--version", std::string("curvetet ") + version());
+  app.require_subcommand(1);
+  app.footer(kFooter);
+  RawMesh raw_mesh;
+  RawPicture raw_picture;
+  MeshCommand mesh;
+  InfoCommand info;
+  CheckCommand check;
+  PictureCommand picture;
+  const CLI::App* mesh_app = describe_mesh(app, raw_mesh, mesh);
+  const CLI::App* info_app = describe_info(app, info);
+  const CLI::App* check_app = describe_check(app, check);
+  const CLI::App* picture_app = describe_picture(app, raw_picture, picture);
+  for (CLI::App* command : app.get_subcommands({})) command->footer(kFooter);
+  Arguments arguments;
+  try {
+    app.parse(argc, argv);
+    if (mesh_app->parsed()) finish_mesh(raw_mesh, mesh);
+    if (picture_app->parsed()) finish_picture(raw_picture, picture);
+  } catch (const CLI::ParseError& error) {
+    if (error.get_exit_code() == 0) {
+      app.exit(error, std::cout, std::cerr);
+    } else {
+      std::cerr << "curvetet: " << error.what() << "\nSee curvetet --help.\n";
+      arguments.exit_code = 2;
+    }
+    return arguments;
+  }
+  if (mesh_app->parsed()) arguments.mesh = std::move(mesh);
+  if (info_app->parsed()) arguments.info = std::move(info);
+  if (check_app->parsed()) arguments.check = std::move(check);
+  if (picture_app->parsed()) arguments.picture = std::move(picture);
+  return arguments;
+}
+
+}  // namespace curvetet::cli

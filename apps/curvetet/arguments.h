@@ -1,0 +1,60 @@
+// The command line as structs: what was asked for, before anything is done.
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "curvetet/error.h"
+#include "curvetet/options.h"
+#include "io/formats.h"
+#include "io/picture.h"
+
+namespace curvetet::cli {
+
+struct Output {
+  std::string path;
+  WriteOptions options;
+};
+
+struct MeshCommand {
+  std::string input;
+  std::vector<Output> outputs;
+  Options options;
+  std::string report;  ///< empty: none
+  bool quiet = false, verbose = false, keep_invalid = false;
+};
+
+struct InfoCommand {
+  std::string input, input_unit;
+  bool json = false, isolate = true;
+};
+
+struct CheckCommand {
+  std::string mesh, cad;  ///< cad is empty where the mesh is checked alone
+  std::string input_unit;
+  std::optional<double> unit_scale;
+  bool json = false, isolate = true;
+  int threads = 0;
+};
+
+struct PictureCommand {
+  std::string mesh, output;
+  PictureOptions options;
+};
+
+/// What to do; exactly one of the commands is set, or none and `exit_code` says how to end (help, version, usage
+/// error).
+struct Arguments {
+  std::optional<MeshCommand> mesh;
+  std::optional<InfoCommand> info;
+  std::optional<CheckCommand> check;
+  std::optional<PictureCommand> picture;
+  int exit_code = 0;
+};
+
+/// Parses and checks the command line; help goes to standard output, complaints to standard error.
+Arguments parse(int argc, char** argv);
+
+}  // namespace curvetet::cli

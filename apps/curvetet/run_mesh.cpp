@@ -1,0 +1,110 @@
+// `curvetet mesh`: meshes, writes the outputs and the report, and says in words what was done. The report is written
+// whatever happened, a mesh only if it is valid or the user insists.
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <exception>
+#include <filesystem>
+#include <new>
+
+#include "commands.h"
+#include "curvetet/curvetet.h"
+#include "summary.h"
+#include "terminal.h"
+
+namespace curvetet::cli {
+
+namespace {
+
+/// Whether a file could be put there; asked before any work, since meshing may take long.
+Status check_writable(const std::string& path) {
+  std::error_code ignored;
+  const std::filesystem::path folder = std::filesystem::absolute(path, ignored).parent_path();
+  const auto error = [&](const std::string& why) {
+    return Error{ErrorCode::output_unwritable,
+                 fmt::format("{} cannot be written: {}", path, why),
+                 {},
+                 {},
+                 "nothing was meshed yet; choose another place"};
+  };
+  if (std::filesystem::is_directory(path, ignored)) return error("it is a folder");
+  if (!std::filesystem::is_directory(folder, ignored)) return error(folder.string() + " is not a folder");
+  if (::access(folder.c_str(), W_OK | X_OK) != 0) return error(folder.string() + " does not permit it");
+  return Done{};
+}
+
+Status check_outputs(const MeshCommand& command) {
+  for (const Output& output : command.outputs) {
+    if (Status status = check_writable(output.path); !status) return status;
+  }
+  return command.report.empty() ? Status(Done{}) : check_writable(command.report);
+}
+
+/// Writes the report if one is wanted; the exit code is the worse of the given one and that of a failed writing.
+int keep_report(const MeshCommand& command, const Report& report, int code) {
+  if (command.report.empty()) return code;
+  const Status written = write_file_atomically(command.report, report.to_json());
+  if (written) return code;
+  const int failed = show_error(written.error());
+  return code == 0 ? failed : code;
+}
+
+int write_outputs(const MeshCommand& command, const Mesh& mesh) {
+  for (const Output& output : command.outputs) {
+    if (const Status written = write_mesh(mesh, output.path, output.options); !written)
+      return show_error(written.error());
+  }
+  return 0;
+}
+
+int finish(const MeshCommand& command, const MeshOutput& made) {
+  const bool write = made.report.valid || command.keep_invalid;
+  int code = write ? write_outputs(command, made.mesh) : 0;
+  if (!command.quiet) fmt::print("{}", summary(made.report));
+  if (code == 0 && !made.report.valid) {
+    code = show_error({ErrorCode::invalid_mesh,
+                       "the mesh did not pass its final check",
+                       {},
+                       {},
+                       command.keep_invalid ? "" : "nothing was written; --keep-invalid writes it all the same"});
+  }
+  return keep_report(command, made.report, code);
+}
+
+/// An exception from within is an error like others, so that the report is still kept.
+Result<MeshOutput> mesh_or_internal_error(const MeshCommand& command, Context& context, Report& report) {
+  const auto internal = [&](const std::string& what) {
+    report.version = version();
+    report.input = command.input;
+    report.errors.push_back(
+        {ErrorCode::internal, what, {}, {}, "please report it, with the input and the command line"});
+    return report.errors.back();
+  };
+  try {
+    return mesh({command.input}, command.options, context, &report);
+  } catch (const std::bad_alloc&) {
+    return internal("out of memory");
+  } catch (const std::exception& error) {
+    return internal(error.what());
+  }
+}
+
+}  // namespace
+
+int run_mesh(const MeshCommand& command) {
+  if (const Status writable = check_outputs(command); !writable) return show_error(writable.error());
+  Context context;
+  Terminal terminal(command.quiet ? Volume::quiet : command.verbose ? Volume::verbose : Volume::normal);
+  terminal.attach(context);
+  const CancelOnSignal signals(context);
+  context.threads = command.options.threads;
+  context.seed = command.options.seed;
+  context.memory_limit = command.options.memory_limit;
+  Report report;
+  const Result<MeshOutput> made = mesh_or_internal_error(command, context, report);
+  terminal.clear_bar();
+  if (made) return finish(command, made.value());
+  return keep_report(command, report, show_error(made.error()));
+}
+
+}  // namespace curvetet::cli

@@ -1,0 +1,96 @@
+// Long lists are cut: the report has them in full.
+#include "summary.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <vector>
+
+namespace curvetet::cli {
+
+namespace {
+
+constexpr std::size_t kMostLines = 8;
+
+std::string line(const std::string& what, const std::string& text) { return fmt::format("  {:<16}{}\n", what, text); }
+
+std::string place(const Point& p) { return fmt::format("({:.6g}, {:.6g}, {:.6g})", p[0], p[1], p[2]); }
+
+std::string size_line(const Report& report) {
+  const auto options = nlohmann::json::parse(report.options_json, nullptr, false);
+  if (!options.is_object() || !options.contains("size") || !options["size"].is_number()) return {};
+  const bool by_default = options.value("size_is_default", false);
+  return line("size", fmt::format("{:.4g} {}{}", options["size"].get<double>(), report.unit,
+                                  by_default ? " (default: a tenth of the body's diagonal)" : ""));
+}
+
+std::string solid_lines(const Report& report) {
+  std::string text;
+  for (std::size_t i = 0; i < std::min(report.solids.size(), kMostLines); ++i) {
+    const SolidReport& solid = report.solids[i];
+    std::string volume = fmt::format("volume {:.6g} {}^3", solid.volume, report.unit);
+    if (solid.cad_volume > 0) {
+      const double percent = 100 * (solid.volume - solid.cad_volume) / solid.cad_volume;
+      volume += fmt::format(" (CAD {:.6g}, {})", solid.cad_volume,
+                            std::abs(percent) < 0.005 ? "equal to 0.01 %" : fmt::format("{:+.2f} %", percent));
+    }
+    text += line(solid.name, fmt::format("{}, {} tetrahedra", volume, solid.tets));
+  }
+  if (report.solids.size() > kMostLines)
+    text += line("", fmt::format("and {} more solids", report.solids.size() - kMostLines));
+  return text;
+}
+
+std::string reduction_lines(const Report& report) {
+  if (report.reductions.empty()) return line("reductions", "none: the size is as asked everywhere");
+  std::string text;
+  for (std::size_t i = 0; i < std::min(report.reductions.size(), kMostLines); ++i) {
+    const ReductionReport& r = report.reductions[i];
+    std::string words = fmt::format("face {}", r.face);
+    if (r.other != 0) words += fmt::format(" to face {}", r.other);
+    words += fmt::format(": {}, size {:.4g}", r.reason, r.size);
+    if (r.gap > 0) words += fmt::format(", gap {:.4g}", r.gap);
+    text += line(i == 0 ? "reductions" : "", words + " at " + place(r.where));
+  }
+  if (report.reductions.size() > kMostLines) {
+    text += line("", fmt::format("and {} more; see the report", report.reductions.size() - kMostLines));
+  }
+  return text;
+}
+
+std::string time_line(const Report& report) {
+  std::vector<StageTime> stages = report.stages;
+  std::stable_sort(stages.begin(), stages.end(), [](const auto& a, const auto& b) { return a.seconds > b.seconds; });
+  double total = 0;
+  for (const StageTime& stage : stages) total += stage.seconds;
+  std::string text = fmt::format("{:.2f} s", total);
+  for (std::size_t i = 0; i < std::min<std::size_t>(stages.size(), 4); ++i) {
+    text += fmt::format("{}{} {:.2f}", i == 0 ? ": " : ", ", stages[i].stage, stages[i].seconds);
+  }
+  return line("time", text);
+}
+
+}  // namespace
+
+std::string summary(const Report& report) {
+  std::string text = fmt::format("{} ({})\n", report.input, report.unit);
+  text += size_line(report);
+  text += line("counts", fmt::format("{} points, {} tetrahedra, {} boundary triangles", report.points, report.tets,
+                                     report.triangles));
+  text += solid_lines(report);
+  text +=
+      line("worst dihedral", fmt::format("{:.2f} degrees at {}; {} tetrahedra below 5 degrees", report.worst_dihedral,
+                                         place(report.worst_place), report.tets_below_five_degrees));
+  text += reduction_lines(report);
+  text += line("rounds", report.rounds == 0 ? "0: no restart with smaller sizes was needed"
+                                            : fmt::format("{} restarts with smaller sizes", report.rounds));
+  text += time_line(report);
+  for (std::size_t i = 0; i < std::min(report.warnings.size(), kMostLines); ++i)
+    text += line("warning", report.warnings[i]);
+  text += line("verdict", report.valid ? "valid" : "NOT VALID");
+  return text;
+}
+
+}  // namespace curvetet::cli
