@@ -26,6 +26,8 @@ constexpr double kBallTolerance = 0.01;
 
 /// Arc over chord from which an edge wraps around: that of half a circle.
 constexpr double kWrap = std::numbers::pi / 2;
+/// Distance of an arc's middle from the chord's over the chord: on a circle the angle over eight, here of 80 degrees.
+constexpr double kBend = 0.175;
 /// Working length below which an arc is a point.
 constexpr double kNoLength = 1e-9;
 
@@ -66,6 +68,22 @@ std::optional<Vec2> affine_centre(const std::array<Vec2, 3>& q, const std::array
   return (wa / sum) * q[0] + (wb / sum) * q[1] + (wc / sum) * q[2];
 }
 
+/// Of two triangles of which one is degenerate before and after: whether its apex comes closer to the middle of its
+/// edge along the pole, so that edges to the pole leave it in their own direction.
+bool apex_improves(const Corner& a, const Corner& b, const Corner& c, const Corner& d) {
+  const auto offset = [](const Corner& p, const Corner& r, const Corner& apex) {
+    return std::abs(dot(apex.q - 0.5 * (p.q + r.q), r.q - p.q));
+  };
+  const auto closer = [&](const Corner& p, const Corner& r, const Corner& now, const Corner& then) {
+    return offset(p, r, then) < (1 - kFlipMargin) * offset(p, r, now);
+  };
+  if (a.vertex == c.vertex) return closer(a, c, b, d);
+  if (b.vertex == c.vertex) return closer(b, c, a, d);
+  if (a.vertex == d.vertex) return closer(a, d, b, c);
+  if (b.vertex == d.vertex) return closer(b, d, a, c);
+  return false;
+}
+
 }  // namespace
 
 bool degenerate(const Corner& a, const Corner& b, const Corner& c) {
@@ -88,19 +106,25 @@ double arc_estimate(const Corner& a, const Corner& b) {
   return std::min(norm(d.x * a.dx + d.y * a.dy), norm(d.x * b.dx + d.y * b.dy));
 }
 
-bool wraps(const Corner& a, const Corner& b) {
-  return arc_estimate(a, b) > kWrap * distance(a.position, b.position) + kNoLength;
+bool bent(const Corner& a, const Corner& b) {
+  const double chord = distance(a.position, b.position);
+  if (arc_estimate(a, b) > kWrap * chord + kNoLength) return true;
+  // At a pole the direction of the derivative depends on where it is approached from.
+  if (norm2(a.normal) == 0 || norm2(b.normal) == 0) return false;
+  // Hermite's cubic has its middle at this distance from the chord's.
+  const Vec2 d = b.q - a.q;
+  return norm(d.x * (a.dx - b.dx) + d.y * (a.dy - b.dy)) / 8 > kBend * chord + kNoLength;
 }
 
 bool flip_improves(const Corner& a, const Corner& b, const Corner& c, const Corner& d) {
-  const bool wraps_then = wraps(c, d), wraps_now = wraps(a, b);
-  if (wraps_then && wraps_now) return arc_estimate(c, d) < (1 - kFlipMargin) * arc_estimate(a, b);
-  if (wraps_then != wraps_now) return wraps_now;
+  const bool bent_then = bent(c, d), bent_now = bent(a, b);
+  if (bent_then && bent_now) return arc_estimate(c, d) < (1 - kFlipMargin) * arc_estimate(a, b);
+  if (bent_then != bent_now) return bent_now;
   if (c.vertex == d.vertex) return false;
   const int degenerate_now = count_degenerate(a, b, c, b, a, d);
   const int degenerate_then = count_degenerate(a, d, c, d, b, c);
   if (degenerate_then != degenerate_now) return degenerate_then < degenerate_now;
-  if (degenerate_now > 0) return false;
+  if (degenerate_now > 0) return apex_improves(a, b, c, d);
   const double aligned_then = std::min(alignment(a, d, c), alignment(d, b, c));
   if (aligned_then <= 0) return false;
   if (std::min(alignment(a, b, c), alignment(b, a, d)) <= 0) return true;

@@ -31,10 +31,11 @@ double alignment(const Corner& a, const Corner& b, const Corner& c);
 
 /// Length of the surface's curve over the chart segment ab, estimated from below by the derivatives at its ends.
 double arc_estimate(const Corner& a, const Corner& b);
-/// The chord of ab is no picture of its curve on the surface, which turns by half a circle or more: it wraps around.
-bool wraps(const Corner& a, const Corner& b);
+/// The chord of ab is no picture of its curve on the surface: by the derivatives at the ends, the curve wraps around, or its
+/// middle is far from the chord's. What lies left of the one may then lie right of the other.
+bool bent(const Corner& a, const Corner& b);
 
-/// Whether triangles (a,b,c) and (b,a,d) should become (a,d,c) and (d,b,c). In order: no edge that wraps around, fewer
+/// Whether triangles (a,b,c) and (b,a,d) should become (a,d,c) and (d,b,c). In order: no bent edge, fewer
 /// degenerate triangles, fewer triangles that oppose the surface's normal, then Delaunay in space (angles at c and d
 /// exceed two right ones, with a margin).
 bool flip_improves(const Corner& a, const Corner& b, const Corner& c, const Corner& d);

@@ -8,6 +8,7 @@
 #include <array>
 #include <cmath>
 #include <map>
+#include <numbers>
 
 #include "boundary/curve_mesh.h"
 #include "planar/segment_grid.h"
@@ -98,6 +99,26 @@ Vec2 mean_speeds(const Surface& surface, const DomainSamples& domain) {
   return count > 0 ? (1.0 / count) * sum : Vec2{1, 1};
 }
 
+/// Parameters along a degenerate edge, such that the surface turns by at most 30 degrees around the pole from one to
+/// the next. With a node at each of its ends alone, no triangulation of the chart could show the triangles around the
+/// pole: their order around an end is not their order around the pole.
+std::vector<double> pole_parameters(const Surface& surface, const EdgeUse& use, const ModelEdge& edge) {
+  const auto at = [&](int i, int n) { return i == n ? edge.high : edge.low + (edge.high - edge.low) * i / n; };
+  double turn = 0;
+  Vec3 previous{};
+  for (int i = 0; i <= kUseSamples; ++i) {
+    const SurfaceFirst first = surface.first(use.curve->value(at(i, kUseSamples)));
+    const Vec3 inwards = normalized(norm2(first.du) > norm2(first.dv) ? first.du : first.dv);
+    if (i > 0) turn += std::atan2(norm(cross(previous, inwards)), dot(previous, inwards));
+    previous = inwards;
+  }
+  const double wanted = std::ceil(turn / (std::numbers::pi / 6) - 1e-6);
+  const int segments = std::isfinite(wanted) ? static_cast<int>(std::clamp(wanted, 1.0, 24.0)) : 1;
+  std::vector<double> t;
+  for (int i = 0; i <= segments; ++i) t.push_back(at(i, segments));
+  return t;
+}
+
 struct FaceRound {
   FaceInput input;
   std::vector<LoopFault> faults;
@@ -144,17 +165,19 @@ class FaceBuilder {
     return std::max({edge.tolerance, model_.vertices[edge.start].tolerance, model_.vertices[edge.end].tolerance});
   }
 
+  std::vector<double> parameters_of(const EdgeUse& use) const {
+    const ModelEdge& edge = model_.edges[use.edge];
+    return edge.degenerate ? pole_parameters(*face_.surface, use, edge) : mesh_.curves[use.edge].parameters;
+  }
+
   ChainInput chain_of(std::int32_t number) const {
     const EdgeUse& use = *uses_[static_cast<std::size_t>(number)];
     const ModelEdge& edge = model_.edges[use.edge];
     ChainInput chain;
     chain.use = number;
-    std::vector<double> t = mesh_.curves[use.edge].parameters;
+    std::vector<double> t = parameters_of(use);
     chain.vertices = mesh_.curves[use.edge].vertices;
-    if (edge.degenerate) {
-      t = {edge.low, edge.high};
-      chain.vertices = {mesh_.cad_vertices[edge.start], mesh_.cad_vertices[edge.end]};
-    }
+    if (edge.degenerate) chain.vertices.assign(t.size(), mesh_.cad_vertices[edge.start]);
     if (use.reversed) {
       std::reverse(t.begin(), t.end());
       std::reverse(chain.vertices.begin(), chain.vertices.end());
@@ -218,15 +241,10 @@ class FaceBuilder {
 
   Side side_of(const ChainInput& chain, std::size_t segment) const {
     const EdgeUse& use = *uses_[static_cast<std::size_t>(chain.use)];
-    const ModelEdge& edge = model_.edges[use.edge];
     Side side{chain.use, segment, chain.q[segment], chain.q[segment + 1], {}, 0};
-    double t0 = use.reversed ? edge.high : edge.low, t1 = use.reversed ? edge.low : edge.high;
-    if (!edge.degenerate) {
-      const std::vector<double>& t = mesh_.curves[use.edge].parameters;
-      const std::size_t n = t.size();
-      t0 = use.reversed ? t[n - 1 - segment] : t[segment];
-      t1 = use.reversed ? t[n - 2 - segment] : t[segment + 1];
-    }
+    const std::vector<double> t = parameters_of(use);
+    const double t0 = use.reversed ? t[t.size() - 1 - segment] : t[segment];
+    const double t1 = use.reversed ? t[t.size() - 2 - segment] : t[segment + 1];
     const Vec2 along = side.b - side.a;
     const double length = norm(along);
     for (int i = 0; i < kArcSamples; ++i) {

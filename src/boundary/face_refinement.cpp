@@ -25,8 +25,9 @@ constexpr double kSineSmallAngle = 0.342;  ///< of 20 degrees
 constexpr double kLongEdge = 1.4;          ///< an edge over size that is split when no centre can be inserted
 constexpr double kEncroachHeight = 0.45;   ///< distance over size within which a diametral sphere counts
 constexpr std::size_t kLargestCavity = 64;
+constexpr int kLastRounds = 4;
 
-enum class Need : std::uint8_t { none, shape, size, fold, wrap };
+enum class Need : std::uint8_t { none, shape, fold, size, bend };
 
 struct Verdict {
   Need need = Need::none;
@@ -59,24 +60,38 @@ class FaceRefiner {
   }
 
   std::vector<AddedVertex> run(const Context& context) {
-    std::vector<TriangleId> all;
-    for (std::size_t t = 0; t < mesh_.triangle_slots(); ++t) {
-      if (mesh_.triangle(TriangleId(t)).alive()) all.push_back(TriangleId(t));
-    }
-    mesh_.restore(all, wanted_, changed_);
-    enqueue(all);
-    for (std::size_t step = 0; !queue_.empty(); ++step) {
-      if (step % 256 == 0 && context.should_stop()) break;
-      const Entry entry = queue_.top();
-      queue_.pop();
-      if (entry.stamp != stamps_[entry.triangle]) continue;
-      refine(TriangleId(entry.triangle));
+    mesh_.restore(alive(), wanted_, changed_);
+    enqueue(alive());
+    empty_queue(context);
+    // Flips that the chart forbade while triangles were large have become legal meanwhile.
+    for (int round = 0; round < kLastRounds && !context.should_stop(); ++round) {
+      mesh_.restore(alive(), wanted_, changed_);
+      if (changed_.empty()) break;
+      enqueue(changed_);
+      empty_queue(context);
     }
     return std::move(added_);
   }
 
  private:
   const Corner& corner(NodeId n) const { return corners_[n.value()]; }
+
+  std::vector<TriangleId> alive() const {
+    std::vector<TriangleId> all;
+    for (std::size_t t = 0; t < mesh_.triangle_slots(); ++t) {
+      if (mesh_.triangle(TriangleId(t)).alive()) all.push_back(TriangleId(t));
+    }
+    return all;
+  }
+
+  void empty_queue(const Context& context) {
+    for (std::size_t step = 0; !queue_.empty(); ++step) {
+      if (step % 256 == 0 && context.should_stop()) return;
+      const Entry entry = queue_.top();
+      queue_.pop();
+      if (entry.stamp == stamps_[entry.triangle]) refine(TriangleId(entry.triangle));
+    }
+  }
 
   void enqueue(const std::vector<TriangleId>& triangles) {
     stamps_.resize(mesh_.triangle_slots(), 0);
@@ -92,13 +107,13 @@ class FaceRefiner {
     return (size_at_[t.node[0].value()] + size_at_[t.node[1].value()] + size_at_[t.node[2].value()]) / 3;
   }
 
-  /// Wraps before folds before sizes before shapes; the larger the earlier among equals.
+  /// Bent edges before sizes before folds before shapes; the larger the earlier among equals.
   Verdict judge(TriangleId id) const {
     const FaceTriangle& t = mesh_.triangle(id);
     const Corner &a = corner(t.node[0]), &b = corner(t.node[1]), &c = corner(t.node[2]);
     const double size = size_of(t);
-    if (wraps(a, b) || wraps(b, c) || wraps(c, a)) {
-      return {Need::wrap, 1e6 + std::max({arc_estimate(a, b), arc_estimate(b, c), arc_estimate(c, a)}) / size};
+    if (bent(a, b) || bent(b, c) || bent(c, a)) {
+      return {Need::bend, 1e6 + std::max({arc_estimate(a, b), arc_estimate(b, c), arc_estimate(c, a)}) / size};
     }
     if (degenerate(a, b, c)) return {};
     const double ab = distance(a.position, b.position), bc = distance(b.position, c.position),
@@ -110,12 +125,14 @@ class FaceRefiner {
       const Vec3 centroid = (1.0 / 3) * (a.position + b.position + c.position);
       wanted = std::min(size, sizes_.at_face(face_, centroid));
     }
-    if (folded(a, b, c) && longest > 2 * kSpacingFloor * wanted) return {Need::fold, 1e3 + longest / wanted};
     // A flat triangle has a large radius and short edges: more points cure it only if they are far enough from its
     // corners.
     if (radius > kRadius * wanted && longest > kSpacing * wanted)
       return {Need::size, 1 + std::min(radius / wanted, 500.0)};
-    if (radius > kSpacing * wanted && shortest < 2 * kSineSmallAngle * radius) return {Need::shape, radius / wanted};
+    // The normal turns with the radius, so a fold that is left within the size is cured at its radius or not at all.
+    if (folded(a, b, c) && radius > 2 * kSpacingFloor * wanted) return {Need::fold, std::min(0.9, radius / wanted)};
+    if (radius > kSpacing * wanted && shortest < 2 * kSineSmallAngle * radius)
+      return {Need::shape, 0.01 * radius / wanted};
     return {};
   }
 
@@ -134,17 +151,13 @@ class FaceRefiner {
       q[i] = corner(t.node[i]).q;
       p[i] = corner(t.node[i]).position;
     }
-    if (verdict.need != Need::wrap) {
-      if (const auto centre = ball_centre(surface_, mesh_.chart, q, p)) {
-        if (insert(*centre, id, verdict.need)) return;
-        if (verdict.need == Need::shape) return;
-        split_longest(id, verdict.need);
-        return;
-      }
+    // The bent edge says where a point is missing; a centre could be anywhere.
+    if (verdict.need == Need::bend) return split_longest(id, verdict.need);
+    auto centre = ball_centre(surface_, mesh_.chart, q, p);
+    if (!centre) {
+      if (const auto other = metric_centre(surface_, mesh_.chart, q)) centre = evaluate(*other);
     }
-    if (const auto centre = metric_centre(surface_, mesh_.chart, q)) {
-      if (insert(evaluate(*centre), id, verdict.need)) return;
-    }
+    if (centre && insert(*centre, id, verdict.need)) return;
     if (verdict.need != Need::shape) split_longest(id, verdict.need);
   }
 
@@ -158,7 +171,8 @@ class FaceRefiner {
     for (std::size_t i = 0; i < 3; ++i) {
       if (t.use[i] != -1) continue;
       const Corner &a = corner(t.node[(i + 1) % 3]), &b = corner(t.node[(i + 2) % 3]);
-      const double length = need == Need::wrap ? arc_estimate(a, b) : distance(a.position, b.position);
+      const double length = need == Need::bend ? arc_estimate(a, b) : distance(a.position, b.position);
+      if (need == Need::bend && !bent(a, b)) continue;
       if (length > best) {
         best = length;
         at = i;
@@ -169,16 +183,15 @@ class FaceRefiner {
     insert(evaluate({snap(middle.x), snap(middle.y)}), id, need);
   }
 
-  /// Least distance to other nodes: the cure of a fold or wrap may be as close as the geometry itself forces it to.
+  /// Least distance to other nodes: the cure of a fold or a bent edge may be as close as the geometry itself forces it
+  /// to.
   double spacing(const FaceTriangle& t, Need need, double size) const {
-    if (need != Need::fold && need != Need::wrap) return kSpacing * size;
-    double longest = 0;
-    for (std::size_t i = 0; i < 3; ++i) {
-      const Corner &a = corner(t.node[i]), &b = corner(t.node[(i + 1) % 3]);
-      const double length = need == Need::wrap ? arc_estimate(a, b) : distance(a.position, b.position);
-      longest = std::max(longest, length);
+    const Corner &a = corner(t.node[0]), &b = corner(t.node[1]), &c = corner(t.node[2]);
+    if (need == Need::bend) {
+      return std::min(kSpacing * size, 0.1 * std::max({arc_estimate(a, b), arc_estimate(b, c), arc_estimate(c, a)}));
     }
-    return std::min(kSpacing * size, std::max(need == Need::wrap ? 0 : kSpacingFloor * size, 0.1 * longest));
+    if (need == Need::fold) return kSpacing * std::min(size, circumradius(a.position, b.position, c.position));
+    return kSpacing * size;
   }
 
   bool insert(const FacePoint& point, TriangleId from, Need need) {
