@@ -32,6 +32,8 @@ namespace {
 constexpr double kInfinite = 1e50;
 /// The kernel's box may be larger than the body by this factor before the frame is made anew from the body itself.
 constexpr double kLooseBox = 3;
+/// A solid whose volume over its area to the power 3/2 is less than this has none (a ball has 0.09).
+constexpr double kFlat = 1e-10;
 
 /// A face as one shell of a solid uses it.
 struct FaceUse {
@@ -51,6 +53,7 @@ class Converter {
   Converter(const CadBody& body, const std::string& source)
       : body_(body),
         source_(source),
+        notes_(body.notes),
         solids_(sub_shapes(body.shape, TopAbs_SOLID)),
         faces_(sub_shapes(body.shape, TopAbs_FACE)),
         edges_(sub_shapes(body.shape, TopAbs_EDGE)),
@@ -59,9 +62,9 @@ class Converter {
   Result<Model> run() {
     if (faces_.IsEmpty()) return Error{ErrorCode::no_faces, source_ + " holds no faces"};
     if (solids_.IsEmpty()) return Error{ErrorCode::no_solid, source_ + " holds no solid"};
-    collect_shells();
-    mark_used();
     if (const auto error = find_box()) return *error;
+    if (const auto error = collect_shells()) return *error;
+    mark_used();
     make_parts(Frame::of(loose_box_));
     if (loose_box_.diagonal() > kLooseBox * model_.frame.length_to_cad(model_.box.diagonal())) {
       Box3 box;
@@ -84,21 +87,59 @@ class Converter {
 
   // --- solids and their shells ---
 
-  void collect_shells() {
+  std::optional<Error> collect_shells() {
     shells_.resize(static_cast<std::size_t>(solids_.Extent()));
+    std::optional<Error> flat;
+    bool any = false;
     for (int s = 1; s <= solids_.Extent(); ++s) {
-      for (TopExp_Explorer shell(solids_(s), TopAbs_SHELL); shell.More(); shell.Next()) {
-        ShellUse use;
-        use.shell = shell.Current();
-        for (TopExp_Explorer face(use.shell, TopAbs_FACE); face.More(); face.Next()) {
-          const TopAbs_Orientation orientation = face.Current().Orientation();
-          if (orientation == TopAbs_EXTERNAL) continue;
-          use.faces.push_back(
-              {faces_.FindIndex(face.Current()), orientation == TopAbs_REVERSED, orientation == TopAbs_INTERNAL});
-        }
-        if (!use.faces.empty()) shells_[static_cast<std::size_t>(s - 1)].push_back(std::move(use));
+      auto& shells = shells_[static_cast<std::size_t>(s - 1)];
+      shells = shells_of(s);
+      const std::string solid = entity("solid", solid_label(s));
+      if (shells.empty()) {
+        notes_.push_back({solid, "has no faces and is left out"});
+      } else if (without_volume(shells)) {
+        notes_.push_back({solid, "has no volume and is left out"});
+        flat = Error{ErrorCode::zero_size, solid + " of " + source_ + " has no volume", {solid}};
+        shells.clear();
+      } else {
+        orient_shells(shells, solid);
+        any = true;
       }
     }
+    if (any) return std::nullopt;
+    return flat ? flat : Error{ErrorCode::no_solid, source_ + " holds no solid with faces"};
+  }
+
+  std::vector<ShellUse> shells_of(int solid) const {
+    std::vector<ShellUse> shells;
+    for (TopExp_Explorer shell(solids_(solid), TopAbs_SHELL); shell.More(); shell.Next()) {
+      ShellUse use;
+      use.shell = shell.Current();
+      for (TopExp_Explorer face(use.shell, TopAbs_FACE); face.More(); face.Next()) {
+        const TopAbs_Orientation orientation = face.Current().Orientation();
+        if (orientation == TopAbs_EXTERNAL) continue;
+        use.faces.push_back(
+            {faces_.FindIndex(face.Current()), orientation == TopAbs_REVERSED, orientation == TopAbs_INTERNAL});
+      }
+      if (use.faces.empty()) continue;
+      GProp_GProps properties;
+      BRepGProp::VolumeProperties(use.shell, properties, false, false, false);
+      use.volume = properties.Mass();
+      shells.push_back(std::move(use));
+    }
+    return shells;
+  }
+
+  /// Two layers of faces that cancel, for example.
+  static bool without_volume(const std::vector<ShellUse>& shells) {
+    double volume = 0, area = 0;
+    for (const ShellUse& shell : shells) {
+      GProp_GProps properties;
+      BRepGProp::SurfaceProperties(shell.shell, properties, false, false);
+      volume += std::abs(shell.volume);
+      area += std::abs(properties.Mass());
+    }
+    return volume <= kFlat * std::pow(area, 1.5);
   }
 
   void mark_used() {
@@ -129,7 +170,7 @@ class Converter {
     next_vertex_label_ = next_edge_label_ = 0;
     model_.frame = frame;
     model_.unit = body_.unit;
-    model_.healing = body_.notes;
+    model_.healing = notes_;
     if (ignored_ > 0) note("file", std::to_string(ignored_) + " faces that belong to no solid are left out");
     make_vertices();
     make_edges();
@@ -317,11 +358,7 @@ class Converter {
       solid.label = solid_label(s);
       solid.path = body_.solid_paths[static_cast<std::size_t>(s - 1)];
       auto& shells = shells_[static_cast<std::size_t>(s - 1)];
-      if (shells.empty()) {
-        note(entity("solid", solid.label), "has no faces and is left out");
-        continue;
-      }
-      orient_shells(shells, entity("solid", solid.label));
+      if (shells.empty()) continue;
       double volume = 0;
       for (const ShellUse& shell : shells) volume += shell.flipped ? -shell.volume : shell.volume;
       solid.volume = volume * std::pow(model_.frame.scale, 3);
@@ -342,21 +379,18 @@ class Converter {
   void orient_shells(std::vector<ShellUse>& shells, const std::string& solid) {
     std::size_t outer = 0;
     for (std::size_t i = 0; i < shells.size(); ++i) {
-      GProp_GProps properties;
-      BRepGProp::VolumeProperties(shells[i].shell, properties, false, false, false);
-      shells[i].volume = properties.Mass();
       if (std::abs(shells[i].volume) > std::abs(shells[outer].volume)) outer = i;
     }
     if (shells[outer].volume < 0) {
       for (ShellUse& shell : shells) shell.flipped = true;
-      note(solid, "was inside out and is turned");
+      notes_.push_back({solid, "was inside out and is turned"});
     }
     for (std::size_t i = 0; i < shells.size(); ++i) {
       if (i == outer) continue;
       const double volume = shells[i].flipped ? -shells[i].volume : shells[i].volume;
       if (volume > 0 && lies_inside(shells[i], shells[outer])) {
         shells[i].flipped = !shells[i].flipped;
-        note(solid, "a void in it was inside out and is turned");
+        notes_.push_back({solid, "a void in it was inside out and is turned"});
       }
     }
   }
@@ -422,6 +456,7 @@ class Converter {
 
   const CadBody& body_;
   const std::string& source_;
+  std::vector<HealingNote> notes_;
   TopTools_IndexedMapOfShape solids_, faces_, edges_, vertices_;
   std::vector<std::vector<ShellUse>> shells_;  ///< by solid
   std::vector<char> face_used_, edge_used_, vertex_used_;

@@ -16,7 +16,6 @@
 #include <ShapeFix_Shape.hxx>
 #include <TopExp.hxx>
 #include <TopExp_Explorer.hxx>
-#include <TopTools_IndexedDataMapOfShapeListOfShape.hxx>
 #include <TopoDS.hxx>
 #include <TopoDS_Compound.hxx>
 #include <TopoDS_Shell.hxx>
@@ -40,21 +39,23 @@ double diagonal_of(const TopoDS_Shape& shape) {
 
 // --- free edges ---
 
-/// Edges that only one face uses, once.
+/// Edges that the faces of a shape use once in all; faces embedded in a solid do not count.
 std::vector<TopoDS_Edge> free_edges(const TopoDS_Shape& shape) {
-  TopTools_IndexedDataMapOfShapeListOfShape faces_of;
-  TopExp::MapShapesAndAncestors(shape, TopAbs_EDGE, TopAbs_FACE, faces_of);
-  std::vector<TopoDS_Edge> found;
-  for (int i = 1; i <= faces_of.Extent(); ++i) {
-    const TopoDS_Edge& edge = TopoDS::Edge(faces_of.FindKey(i));
-    if (faces_of(i).Extent() != 1 || BRep_Tool::Degenerated(edge)) continue;
-    int uses = 0;
-    for (TopExp_Explorer it(faces_of(i).First(), TopAbs_EDGE); it.More(); it.Next()) {
-      if (!it.Current().IsSame(edge)) continue;
-      const TopAbs_Orientation orientation = it.Current().Orientation();
-      uses += orientation == TopAbs_FORWARD || orientation == TopAbs_REVERSED ? 1 : 2;
+  const TopTools_IndexedMapOfShape edges = sub_shapes(shape, TopAbs_EDGE);
+  std::vector<int> uses(static_cast<std::size_t>(edges.Extent()) + 1, 0);
+  const auto one_sided = [](const TopoDS_Shape& part) {
+    return part.Orientation() == TopAbs_FORWARD || part.Orientation() == TopAbs_REVERSED;
+  };
+  for (TopExp_Explorer face(shape, TopAbs_FACE); face.More(); face.Next()) {
+    if (!one_sided(face.Current())) continue;
+    for (TopExp_Explorer edge(face.Current(), TopAbs_EDGE); edge.More(); edge.Next()) {
+      if (one_sided(edge.Current())) ++uses[static_cast<std::size_t>(edges.FindIndex(edge.Current()))];
     }
-    if (uses == 1) found.push_back(edge);
+  }
+  std::vector<TopoDS_Edge> found;
+  for (int i = 1; i <= edges.Extent(); ++i) {
+    const TopoDS_Edge& edge = TopoDS::Edge(edges(i));
+    if (uses[static_cast<std::size_t>(i)] == 1 && !BRep_Tool::Degenerated(edge)) found.push_back(edge);
   }
   return found;
 }
@@ -198,9 +199,13 @@ std::optional<Error> close_solids(CadBody& body, const std::string& source) {
     return std::nullopt;
   }
   const TopTools_IndexedMapOfShape solids = sub_shapes(body.shape, TopAbs_SOLID);
-  bool any_open = false;
-  for (int i = 1; i <= solids.Extent(); ++i) any_open = any_open || !free_edges(solids(i)).empty();
-  if (!any_open) return std::nullopt;
+  for (int i = 1; i <= solids.Extent() && open.empty(); ++i) open = free_edges(solids(i));
+  if (open.empty()) return std::nullopt;
+  const Error error = open_shell(body, source, open);
+  // Sewing may close it; solids that it leaves open must not vanish from the body.
+  CadBody sewn = body;
+  if (!sew(sewn, open) || !open.empty()) return error;
+  body = std::move(sewn);
   return std::nullopt;
 }
 

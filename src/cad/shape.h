@@ -1,0 +1,22 @@
+// A shape in memory as a Model, for programs that hold OpenCASCADE shapes themselves.
+#pragma once
+
+#include <TopoDS_Shape.hxx>
+#include <string>
+
+#include "base/context.h"
+#include "base/error.h"
+#include "geometry/model.h"
+
+namespace curvetet {
+
+struct ShapeOptions {
+  std::string unit = "mm";     ///< of the shape's coordinates
+  std::string name = "shape";  ///< what messages call it
+};
+
+/// Ids are those of TopExp::MapShapes on the shape. Repairs, where the shape needs any, run in this process; they work
+/// on copies of what they change, but may raise tolerances in the shape itself.
+Result<Model> model_from_shape(const TopoDS_Shape& shape, const ShapeOptions& options, Context& context);
+
+}  // namespace curvetet

@@ -1,0 +1,255 @@
+// Shapes in memory become sound models, with the kernel's own numbers.
+#include <gtest/gtest.h>
+
+#include <BRepBuilderAPI_NurbsConvert.hxx>
+#include <BRepBuilderAPI_Sewing.hxx>
+#include <BRepBuilderAPI_Transform.hxx>
+#include <BRepGProp.hxx>
+#include <BRepPrimAPI_MakeBox.hxx>
+#include <BRepPrimAPI_MakeCone.hxx>
+#include <BRepPrimAPI_MakeCylinder.hxx>
+#include <BRepPrimAPI_MakeHalfSpace.hxx>
+#include <BRepPrimAPI_MakeSphere.hxx>
+#include <BRepPrimAPI_MakeTorus.hxx>
+#include <BRep_Builder.hxx>
+#include <BRep_Tool.hxx>
+#include <GProp_GProps.hxx>
+#include <Geom_Surface.hxx>
+#include <TopExp.hxx>
+#include <TopExp_Explorer.hxx>
+#include <TopTools_IndexedMapOfShape.hxx>
+#include <TopoDS.hxx>
+#include <TopoDS_Compound.hxx>
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <random>
+
+#include "cad/shape.h"
+#include "shapes.h"
+
+namespace curvetet {
+namespace {
+
+constexpr double kPi = std::numbers::pi;
+
+Result<Model> convert(const TopoDS_Shape& shape) {
+  Context context;
+  return model_from_shape(shape, ShapeOptions{}, context);
+}
+
+struct Named {
+  const char* name;
+  TopoDS_Shape shape;
+};
+
+std::vector<Named> shapes() {
+  const gp_Ax2 tilted(gp_Pnt(3, -2, 7), gp_Dir(1, 2, 3));
+  std::vector<Named> all{{"box", BRepPrimAPI_MakeBox(1, 2, 3).Shape()},
+                         {"ball", BRepPrimAPI_MakeSphere(tilted, 5).Shape()},
+                         {"half ball", BRepPrimAPI_MakeSphere(tilted, 5, 0, kPi / 2, kPi).Shape()},
+                         {"cylinder", BRepPrimAPI_MakeCylinder(tilted, 2, 5).Shape()},
+                         {"cone", BRepPrimAPI_MakeCone(tilted, 3, 0, 5).Shape()},
+                         {"frustum", BRepPrimAPI_MakeCone(tilted, 3, 1, 5).Shape()},
+                         {"torus", BRepPrimAPI_MakeTorus(tilted, 10, 3).Shape()},
+                         {"piece of torus", BRepPrimAPI_MakeTorus(tilted, 10, 3, 1.5).Shape()},
+                         {"bracket", test::make_bracket()},
+                         {"box with core", test::make_box_with_core()}};
+  const std::size_t analytic = all.size();
+  for (std::size_t i = 0; i < analytic; ++i) {
+    all.push_back({all[i].name, BRepBuilderAPI_NurbsConvert(all[i].shape).Shape()});
+    gp_Trsf mirror;
+    mirror.SetMirror(gp_Ax2(gp_Pnt(1, 1, 1), gp_Dir(3, 1, 1)));
+    all.push_back({all[i].name, BRepBuilderAPI_Transform(all[i].shape, mirror).Shape()});
+    gp_Trsf move;
+    move.SetRotation(gp_Ax1(gp_Pnt(9, 0, 0), gp_Dir(1, 1, 0)), 0.7);
+    all.push_back({all[i].name, all[i].shape.Moved(TopLoc_Location(move))});
+  }
+  return all;
+}
+
+TEST(Shapes, BecomeSoundModels) {
+  for (const Named& named : shapes()) {
+    const Result<Model> model = convert(named.shape);
+    ASSERT_TRUE(model) << named.name << ": " << model.error().message;
+    test::expect_sound(model.value(), named.name);
+    GProp_GProps volume, area;
+    BRepGProp::VolumeProperties(named.shape, volume);
+    BRepGProp::SurfaceProperties(named.shape, area, true);
+    // The kernel integrates trimmed spline faces to about a thousandth only.
+    EXPECT_NEAR(test::total_volume(model.value()), std::abs(volume.Mass()), 1e-3 * std::abs(volume.Mass()))
+        << named.name;
+    EXPECT_NEAR(test::total_area(model.value()), area.Mass(), 1e-4 * area.Mass()) << named.name;
+  }
+}
+
+/// Every surface evaluates to the kernel's own values, parameter by parameter.
+TEST(Shapes, KeepTheParametrisation) {
+  std::mt19937 random(7);
+  for (const Named& named : shapes()) {
+    const Result<Model> result = convert(named.shape);
+    ASSERT_TRUE(result);
+    const Model& model = result.value();
+    TopTools_IndexedMapOfShape faces;
+    TopExp::MapShapes(named.shape, TopAbs_FACE, faces);
+    for (const ModelFace& face : model.faces) {
+      const Handle(Geom_Surface) surface = BRep_Tool::Surface(TopoDS::Face(faces(static_cast<int>(face.label.cad_id))));
+      std::uniform_real_distribution<double> u(face.low.x, face.high.x), v(face.low.y, face.high.y);
+      for (int i = 0; i < 5; ++i) {
+        const Vec2 uv{u(random), v(random)};
+        const gp_Pnt p = surface->Value(uv.x, uv.y);
+        const Vec3 ours = model.frame.to_cad(face.surface->value(uv));
+        EXPECT_LT(distance(ours, {p.X(), p.Y(), p.Z()}), 1e-9 * (1 + model.frame.length_to_cad(1))) << named.name;
+        EXPECT_EQ(face.surface->value(uv), face.surface->clone()->value(uv));
+      }
+    }
+  }
+}
+
+/// The outward normals, integrated over the trimmed faces, give each solid's volume: orientation and sides are right.
+TEST(Shapes, SharedFacesHaveASolidOnEachSide) {
+  const Result<Model> result = convert(test::make_box_with_core());
+  ASSERT_TRUE(result);
+  const Model& model = result.value();
+  ASSERT_EQ(model.solids.size(), 2U);
+  std::size_t shared = 0;
+  for (const ModelFace& face : model.faces) {
+    EXPECT_TRUE(face.back.valid());
+    EXPECT_NE(face.back, face.front);
+    shared += face.front.valid() ? 1 : 0;
+  }
+  EXPECT_EQ(shared, 1U);
+  std::vector<double> volumes;
+  for (const ModelSolid& solid : model.solids) volumes.push_back(solid.volume / std::pow(model.frame.scale, 3));
+  std::sort(volumes.begin(), volumes.end());
+  EXPECT_NEAR(volumes[0], 40 * kPi, 1e-3);
+  EXPECT_NEAR(volumes[1], 1000 - 40 * kPi, 1e-3);
+}
+
+TEST(Shapes, InsideOutSolidsAreTurned) {
+  TopoDS_Shape box = BRepPrimAPI_MakeBox(1, 2, 3).Shape();
+  box.Reverse();
+  const Result<Model> model = convert(box);
+  ASSERT_TRUE(model);
+  test::expect_sound(model.value(), "reversed box");
+  EXPECT_NEAR(test::total_volume(model.value()), 6, 1e-9);
+  ASSERT_FALSE(model.value().healing.empty());
+  EXPECT_NE(model.value().healing.front().what.find("inside out"), std::string::npos);
+  for (const ModelFace& face : model.value().faces) {
+    const Vec2 middle = 0.5 * (face.low + face.high);
+    const Vec3 outward = (face.reversed ? -1.0 : 1.0) * face.surface->normal(middle);
+    EXPECT_GT(dot(outward, face.surface->value(middle)), 0) << "the box is centred on the origin of its frame";
+  }
+}
+
+TEST(Shapes, InstancesAreDistinct) {
+  const TopoDS_Shape ball = BRepPrimAPI_MakeSphere(1).Shape();
+  TopoDS_Compound compound;
+  BRep_Builder builder;
+  builder.MakeCompound(compound);
+  for (int i = 0; i < 3; ++i) {
+    gp_Trsf move;
+    move.SetTranslation(gp_Vec(3.0 * i, 0, 0));
+    builder.Add(compound, ball.Moved(TopLoc_Location(move)));
+  }
+  const Result<Model> model = convert(compound);
+  ASSERT_TRUE(model);
+  EXPECT_EQ(model.value().solids.size(), 3U);
+  EXPECT_EQ(model.value().faces.size(), 3U);
+  test::expect_sound(model.value(), "three balls");
+}
+
+TopoDS_Compound loose_faces(const TopoDS_Shape& shape, int without) {
+  TopoDS_Compound compound;
+  BRep_Builder builder;
+  builder.MakeCompound(compound);
+  int i = 0;
+  for (TopExp_Explorer face(BRepBuilderAPI_NurbsConvert(shape, true).Shape(), TopAbs_FACE); face.More(); face.Next()) {
+    if (++i != without) builder.Add(compound, face.Current());
+  }
+  return compound;
+}
+
+Vec3 centre_of(const TopoDS_Shape& face) {
+  GProp_GProps properties;
+  BRepGProp::SurfaceProperties(face, properties);
+  const gp_Pnt centre = properties.CentreOfMass();
+  return {centre.X(), centre.Y(), centre.Z()};
+}
+
+TEST(Shapes, LooseFacesAreSewn) {
+  const TopoDS_Compound faces = loose_faces(BRepPrimAPI_MakeBox(1, 2, 3).Shape(), 0);
+  const Result<Model> model = convert(faces);
+  ASSERT_TRUE(model) << model.error().message;
+  EXPECT_EQ(model.value().solids.size(), 1U);
+  EXPECT_NEAR(test::total_volume(model.value()), 6, 1e-9);
+  test::expect_sound(model.value(), "sewn box");
+  TopTools_IndexedMapOfShape input;
+  TopExp::MapShapes(faces, TopAbs_FACE, input);
+  for (const ModelFace& face : model.value().faces) {
+    const Vec3 here = model.value().frame.to_cad(face.surface->value(0.5 * (face.low + face.high)));
+    EXPECT_LT(distance(here, centre_of(input(static_cast<int>(face.label.cad_id)))), 1e-6) << "ids follow the faces";
+  }
+}
+
+TEST(Shapes, AnOpenShellIsAnError) {
+  const Result<Model> model = convert(loose_faces(BRepPrimAPI_MakeBox(1, 2, 3).Shape(), 2));
+  ASSERT_FALSE(model);
+  EXPECT_EQ(model.error().code, ErrorCode::open_shell);
+  EXPECT_NE(model.error().message.find("4 free edges"), std::string::npos) << model.error().message;
+  EXPECT_TRUE(model.error().where.has_value());
+  EXPECT_FALSE(model.error().entities.empty());
+}
+
+TEST(Shapes, FacesOutsideOfSolidsAreLeftOut) {
+  TopoDS_Compound compound;
+  BRep_Builder builder;
+  builder.MakeCompound(compound);
+  const TopoDS_Shape loose = BRepPrimAPI_MakeBox(1, 1, 1).Shape();
+  builder.Add(compound, TopExp_Explorer(loose, TopAbs_FACE).Current());
+  builder.Add(compound, BRepPrimAPI_MakeBox(gp_Pnt(5, 5, 5), 1, 2, 3).Shape());
+  const Result<Model> model = convert(compound);
+  ASSERT_TRUE(model);
+  EXPECT_EQ(model.value().faces.size(), 6U);
+  EXPECT_EQ(model.value().faces[FaceId(0)].label.cad_id, 2U) << "ids are those of the input shape";
+  EXPECT_FALSE(model.value().healing.empty());
+}
+
+TEST(Shapes, VoidsAndNestedShells) {
+  TopoDS_Compound compound;
+  BRep_Builder builder;
+  builder.MakeCompound(compound);
+  for (const double radius : {3.0, 1.0, 2.0}) {
+    const TopoDS_Shape ball = BRepPrimAPI_MakeSphere(radius).Shape();
+    builder.Add(compound, TopExp_Explorer(ball, TopAbs_FACE).Current());
+  }
+  const Result<Model> model = convert(compound);
+  ASSERT_TRUE(model) << model.error().message;
+  EXPECT_EQ(model.value().solids.size(), 2U) << "a ball in a hollow ball";
+  EXPECT_NEAR(test::total_volume(model.value()), 4.0 / 3 * kPi * (27 - 8 + 1), 1e-3);
+}
+
+TEST(Shapes, WhatCannotBeMeshedIsAnError) {
+  const auto code = [](const TopoDS_Shape& shape) {
+    const Result<Model> model = convert(shape);
+    return model ? ErrorCode::internal : model.error().code;
+  };
+  EXPECT_EQ(code(TopoDS_Shape()), ErrorCode::no_faces);
+  EXPECT_EQ(code(TopExp_Explorer(BRepPrimAPI_MakeBox(1, 1, 1).Shape(), TopAbs_EDGE).Current()), ErrorCode::no_faces);
+  const TopoDS_Shape box = BRepPrimAPI_MakeBox(1, 1, 1).Shape();
+  const TopoDS_Face face = TopoDS::Face(TopExp_Explorer(box, TopAbs_FACE).Current());
+  EXPECT_EQ(code(face), ErrorCode::open_shell);
+  const ErrorCode half_space = code(BRepPrimAPI_MakeHalfSpace(face, gp_Pnt(9, 9, 9)).Shape());
+  EXPECT_TRUE(half_space == ErrorCode::open_shell || half_space == ErrorCode::unbounded);
+}
+
+TEST(Shapes, CancelledBeforeItBegins) {
+  Context context;
+  context.cancel();
+  const Result<Model> model = model_from_shape(test::make_bracket(), ShapeOptions{}, context);
+  ASSERT_FALSE(model);
+  EXPECT_EQ(model.error().code, ErrorCode::cancelled);
+}
+
+}  // namespace
+}  // namespace curvetet
