@@ -78,8 +78,7 @@ demo() {
   local program=build/release/apps/curvetet/curvetet body
   body=$(find examples -name '*.step' | sort | head -n 1)
   say "Meshing $body"
-  "$program" mesh "$body" -o out/demo.msh --report out/demo.json
-  "$program" convert out/demo.msh -o out/demo.vtu
+  "$program" mesh "$body" -o out/demo.msh -o out/demo.vtu --report out/demo.json
   "$program" picture out/demo.msh -o out/demo.png --cut x=0.5
   say "Made"
   ls -1 out/demo.msh out/demo.vtu out/demo.json out/demo.png
@@ -90,7 +89,7 @@ bench() {
   mkdir -p build
   say "Benchmarks"
   configure_and_build bench
-  find build/bench/bench -maxdepth 1 -type f -name 'bench_*' -executable | sort | while read -r program; do
+  find build/bench/bench -maxdepth 1 -type f -name '*_bench' -executable | sort | while read -r program; do
     say "$(basename "$program")"
     "$program"
   done
