@@ -25,7 +25,7 @@ struct Options {
   std::optional<double> min_size;    ///< floor of derived sizes; default: a thousandth of the size
   double curvature = 12;             ///< elements per full turn; 0: off
   std::optional<double> chord_height;///< largest distance of a chord to its arc; default: off
-  double grading = 0.3;              ///< growth of the size per length, > 0
+  double grading = 0.5;              ///< growth of the size per length, > 0
   bool gaps = true;                  ///< chord height at most a quarter of the local gap
   std::vector<LocalSize> local_sizes;
   std::function<double(Point)> size_callback;

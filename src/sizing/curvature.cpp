@@ -25,6 +25,7 @@ namespace {
 constexpr double kInfinite = std::numeric_limits<double>::infinity();
 constexpr double kFaceHeightFactor = 0.75;  ///< 6 / 8: heights of triangles against those of chords
 constexpr double kConfirmed = 0.5;          ///< part of the angle that must really be turned
+constexpr double kLeastFraction = 0.1;      ///< of a size over which a turning can be measured
 
 double angle_between(Vec3 a, Vec3 b) { return std::atan2(norm(cross(a, b)), dot(a, b)); }
 
@@ -115,16 +116,23 @@ double FaceBending::effective_curvature(const SurfaceBending& at) const {
   return curvature;
 }
 
+Vec3 FaceBending::normal_at(Vec2 uv, const SurfaceFirst& s) const {
+  const double along_u = norm(s.du) * (high_.x - low_.x), along_v = norm(s.dv) * (high_.y - low_.y);
+  const bool collapsed = std::min(along_u, along_v) <= 1e-6 * std::max(along_u, along_v);
+  return collapsed ? surface_->normal(uv) : cross(s.du, s.dv);
+}
+
 double FaceBending::turning_size(Vec2 uv, const SurfaceBending& at, double angle) const {
   double size = angle / effective_curvature(at);
   if (analytic_) return size;
   while (size < options_.size) {
     const Vec2 step = (0.5 * size) * at.direction;
     const Vec2 one = clamped(uv - step, low_, high_), two = clamped(uv + step, low_, high_);
-    const Vec2 part{one.x - two.x, one.y - two.y};
-    const double fraction = std::min(1.0, norm(part) / (2 * norm(step)));
-    const double turned = angle_between(surface_->normal(one), surface_->normal(two));
-    if (turned >= kConfirmed * fraction * std::min(angle, 1.0)) break;
+    // Near a border the two points are closer than the size; too close, they prove nothing.
+    const SurfaceFirst here = surface_->first(one), there = surface_->first(two);
+    const double fraction = std::min(1.0, distance(here.value, there.value) / size);
+    const double turned = angle_between(normal_at(one, here), normal_at(two, there));
+    if (fraction >= kLeastFraction && turned >= kConfirmed * fraction * std::min(angle, 1.0)) break;
     size *= 2;
   }
   return size;
@@ -152,9 +160,10 @@ Demand curve_demand(const Curve& curve, double t, double low, double high, const
     const bool analytic = curve.kind() == CurveKind::circle || curve.kind() == CurveKind::ellipse;
     while (!analytic && result.size < options.size) {
       const double step = 0.5 * result.size / speed;
-      const double one = std::max(low, t - step), two = std::min(high, t + step);
-      const double turned = angle_between(curve.second(one).dt, curve.second(two).dt);
-      if (turned >= kConfirmed * (two - one) / (2 * step) * std::min(angle, 1.0)) break;
+      const CurveSecond one = curve.second(std::max(low, t - step)), two = curve.second(std::min(high, t + step));
+      const double fraction = std::min(1.0, distance(one.value, two.value) / result.size);
+      const double turned = angle_between(one.dt, two.dt);
+      if (fraction >= kLeastFraction && turned >= kConfirmed * fraction * std::min(angle, 1.0)) break;
       result.size *= 2;
     }
   }

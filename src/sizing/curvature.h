@@ -41,6 +41,8 @@ class FaceBending {
 
  private:
   void find_singular_points(const Model& model, const ModelFace& face);
+  /// Not of unit length; the limit where a derivative collapses.
+  Vec3 normal_at(Vec2 uv, const SurfaceFirst& s) const;
   double turning_size(Vec2 uv, const SurfaceBending& at, double angle) const;
 
   SizingOptions options_;

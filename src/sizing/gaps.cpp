@@ -40,7 +40,7 @@ constexpr double kSteepest = 0.5;           ///< gap over distance to a shared e
 constexpr double kSpacing = 1;              ///< patches are split while longer than this part of the demand
 constexpr int kToAndFro = 4;                ///< projections towards the closest pair
 constexpr std::size_t kNearestPatches = 2;  ///< of each face that a sample is projected from
-constexpr std::size_t kBlock = 64;          ///< patches or edge samples per task
+constexpr std::size_t kBlock = 256;         ///< patches or edge samples per task
 constexpr std::size_t kMostProbes = 20000;  ///< per task
 
 /// The size at which the chord height is a quarter of the gap.
@@ -48,13 +48,6 @@ double gap_size(double gap, double curvature) { return std::sqrt(2 * gap / curva
 
 /// Gaps wider than this demand nothing of an element of this size; beyond the radius a chord height means nothing.
 double reach_of(double curvature, double size) { return std::min(0.5 * curvature * size * size, 0.5 / curvature); }
-
-double distance_to_segment(Vec3 p, Vec3 a, Vec3 b) {
-  const Vec3 d = b - a;
-  const double length2 = norm2(d);
-  const double t = length2 > 0 ? std::clamp(dot(p - a, d) / length2, 0.0, 1.0) : 0;
-  return distance(p, a + t * d);
-}
 
 /// Edges and vertices of each face, ascending.
 struct FaceBorder {
@@ -217,6 +210,8 @@ class GapSearch {
     const Surface& surface = bending_of(a.face).surface();
     const Vec2 step{shortest(b.middle().x - a.middle().x, surface.period_u()),
                     shortest(b.middle().y - a.middle().y, surface.period_v())};
+    const double least = kFold * distance(a.point, b.point) + a.extent() + b.extent();
+    if (way_along(a, step) <= 0.5 * least && way_along(b, step) <= 0.5 * least) return true;  // no need to measure
     double way = 0;
     Vec3 last = a.point;
     for (int i = 1; i <= 4; ++i) {
@@ -224,7 +219,13 @@ class GapSearch {
       way += distance(last, next);
       last = next;
     }
-    return way <= kFold * distance(a.point, b.point) + a.extent() + b.extent();
+    return way <= least;
+  }
+
+  /// Length of a step in (u,v), by the scale of the patch.
+  static double way_along(const Patch& patch, Vec2 step) {
+    const Vec2 cell = patch.high - patch.low;
+    return std::hypot(step.x / cell.x * patch.length_u, step.y / cell.y * patch.length_v);
   }
 
   static double shortest(double step, double period) {
@@ -248,12 +249,14 @@ class GapSearch {
     double demand = probe.size;
     std::size_t rank = 0;
     std::optional<Foot> last;
+    bool excluded = false;
     for (std::size_t i = 0; i < order.size(); ++i) {
       if (i == 0 || order[i].face != order[i - 1].face) {
         rank = 0;
         last.reset();
+        excluded = is_near_shared(probe, order[i].face, probe.size);
       }
-      if (rank++ >= kNearestPatches) continue;
+      if (excluded || rank++ >= kNearestPatches) continue;
       const FaceId other = order[i].face;
       const auto foot = foot_on(probe.point, other, scene_.patches[order[i].patch]->middle());
       if (!foot || (last && distance(last->point, foot->point) <= 1e-3 * foot->gap)) continue;
@@ -322,8 +325,7 @@ class GapSearch {
     if (std::abs(dot(across, probe.axis)) < kFacing) return false;
     const Vec3 normal = bending_of(other).surface().normal(foot.uv);
     if (std::abs(dot(across, normal)) < kFacing) return false;
-    const double away = distance_to_shared(probe, other);
-    return away >= probe.size && foot.gap <= kSteepest * away;
+    return !is_near_shared(probe, other, std::max(probe.size, foot.gap / kSteepest));
   }
 
   const Shared& shared_with(const Probe& probe, FaceId other) {
@@ -348,17 +350,14 @@ class GapSearch {
     return shared;
   }
 
-  double distance_to_shared(const Probe& probe, FaceId other) {
+  /// Is the probe closer to an edge or vertex that it has in common with the other face?
+  bool is_near_shared(const Probe& probe, FaceId other, double reach) {
     const Shared& shared = shared_with(probe, other);
-    double least = std::numeric_limits<double>::infinity();
     for (const CadVertexId vertex : shared.vertices)
-      least = std::min(least, distance(probe.point, scene_.input.model.vertices[vertex].point));
-    for (const EdgeId edge : shared.edges) {
-      const auto& samples = scene_.input.edges[edge.value()].samples;
-      for (std::size_t i = 0; i + 1 < samples.size(); ++i)
-        least = std::min(least, distance_to_segment(probe.point, samples[i].point, samples[i + 1].point));
-    }
-    return least;
+      if (distance(probe.point, scene_.input.model.vertices[vertex].point) < reach) return true;
+    for (const EdgeId edge : shared.edges)
+      if (scene_.input.edges[edge.value()].is_within(probe.point, reach)) return true;
+    return false;
   }
 
   /// Gives both sides what the gap demands of them; returns what it demands of the probe.

@@ -16,7 +16,7 @@ using sizing::EdgeSamples;
 using sizing::FaceSamples;
 using sizing::TrimmedDomain;
 
-constexpr double kShortestEdgeSize = 0.1;  ///< sizes from short edges, as a part of the size around them
+constexpr double kShortestEdgeSize = 0.3;  ///< sizes from short edges, as a part of the size around them
 
 Error bad_option(const std::string& message) { return {ErrorCode::bad_option, message}; }
 

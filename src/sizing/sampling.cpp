@@ -39,6 +39,19 @@ int first_cells(SurfaceKind kind) {
 
 double angle_between(Vec3 a, Vec3 b) { return std::atan2(norm(cross(a, b)), dot(a, b)); }
 
+double distance_to_segment(Vec3 p, Vec3 a, Vec3 b) {
+  const Vec3 d = b - a;
+  const double length2 = norm2(d);
+  const double t = length2 > 0 ? std::clamp(dot(p - a, d) / length2, 0.0, 1.0) : 0;
+  return distance(p, a + t * d);
+}
+
+bool box_within(Vec3 p, const Box3& box, double reach) {
+  for (int i = 0; i < 3; ++i)
+    if (p[i] < box.low[i] - reach || p[i] > box.high[i] + reach) return false;
+  return true;
+}
+
 /// Bisection of one face, breadth first, so that a face that meets its budget is covered evenly.
 class FaceSampler {
  public:
@@ -121,6 +134,11 @@ class EdgeSampler {
     }
     // An edge no longer than its tolerance is a point: what its curve does there means nothing.
     if (result_.length <= std::max(2 * edge_.tolerance, 64 * kGrid)) return {};
+    for (std::size_t i = 0; i + 1 < result_.samples.size(); ++i) {
+      if (i % EdgeSamples::kSamplesPerBox == 0) result_.boxes.emplace_back();
+      result_.boxes.back().extend(result_.samples[i].point);
+      result_.boxes.back().extend(result_.samples[i + 1].point);
+    }
     return std::move(result_);
   }
 
@@ -191,6 +209,16 @@ class EdgeSampler {
 };
 
 }  // namespace
+
+bool EdgeSamples::is_within(Vec3 point, double reach) const {
+  for (std::size_t b = 0; b < boxes.size(); ++b) {
+    if (!box_within(point, boxes[b], reach)) continue;
+    const std::size_t end = std::min((b + 1) * kSamplesPerBox, samples.size() - 1);
+    for (std::size_t i = b * kSamplesPerBox; i < end; ++i)
+      if (distance_to_segment(point, samples[i].point, samples[i + 1].point) < reach) return true;
+  }
+  return false;
+}
 
 EdgeSample sample_curve(const Curve& curve, double t) {
   const CurveSecond c = curve.second(t);

@@ -53,6 +53,10 @@ struct EdgeSamples {
   std::vector<EdgeSample> samples;  ///< in the order of the parameter, ends included
   double length = 0;
   std::vector<SizeSource> sources;
+  std::vector<Box3> boxes;  ///< of each run of kSamplesPerBox stretches between samples
+  static constexpr std::size_t kSamplesPerBox = 16;
+  /// Is the polygon of the samples within this distance of the point?
+  bool is_within(Vec3 point, double reach) const;
 };
 
 /// Samples the edge as densely as its bending and that of its faces demand. A degenerate edge has none.

@@ -32,10 +32,11 @@ bool before(const Cone& a, const Cone& b) {
   return std::tie(a.size, a.where.x, a.where.y, a.where.z) < std::tie(b.size, b.where.x, b.where.y, b.where.z);
 }
 
-double distance_to_box(Vec3 p, const Box3& box) {
-  Vec3 d;
-  for (int i = 0; i < 3; ++i) d[i] = std::max({box.low[i] - p[i], 0.0, p[i] - box.high[i]});
-  return norm(d);
+double squared_distance_to_box(Vec3 p, const Box3& box) {
+  const double x = std::max({box.low.x - p.x, 0.0, p.x - box.high.x});
+  const double y = std::max({box.low.y - p.y, 0.0, p.y - box.high.y});
+  const double z = std::max({box.low.z - p.z, 0.0, p.z - box.high.z});
+  return x * x + y * y + z * z;
 }
 
 int longest_axis(const Box3& box) {
@@ -102,36 +103,39 @@ struct SizeField::Tree {
     return index;
   }
 
-  /// The least of `best` and all cones at p.
+  /// The least of `best` and all cones at p. Compares squares: grading * distance < best - size.
   double lowest(Vec3 p, double grading, double best) const {
     if (nodes.empty()) return best;
+    const double grading2 = grading * grading;
+    const auto may_hold_less = [&](double size, double distance2) {
+      const double room = best - size;
+      return room > 0 && grading2 * distance2 < room * room;
+    };
     struct Visit {
       std::uint32_t node;
-      double bound;
+      double distance2;
     };
+    const auto visit_of = [&](std::uint32_t node) { return Visit{node, squared_distance_to_box(p, nodes[node].box)}; };
     std::array<Visit, 64> stack;  // depth is at most 33: the tree is balanced
     std::size_t top = 0;
-    stack[top++] = {0, bound(0, p, grading)};
+    stack[top++] = visit_of(0);
     while (top > 0) {
       const Visit visit = stack[--top];
-      if (visit.bound >= best) continue;
       const Node& node = nodes[visit.node];
+      if (!may_hold_less(node.least, visit.distance2)) continue;
       if (node.right == 0) {
-        for (std::uint32_t i = node.begin; i < node.end; ++i)
-          best = std::min(best, cones[i].size + grading * distance(p, cones[i].where));
+        for (std::uint32_t i = node.begin; i < node.end; ++i) {
+          const double distance2 = norm2(p - cones[i].where);
+          if (may_hold_less(cones[i].size, distance2)) best = cones[i].size + grading * std::sqrt(distance2);
+        }
         continue;
       }
-      Visit near{visit.node + 1, bound(visit.node + 1, p, grading)};
-      Visit far{node.right, bound(node.right, p, grading)};
-      if (far.bound < near.bound) std::swap(near, far);
+      Visit near = visit_of(visit.node + 1), far = visit_of(node.right);
+      if (far.distance2 < near.distance2) std::swap(near, far);
       stack[top++] = far;
       stack[top++] = near;
     }
     return best;
-  }
-
-  double bound(std::uint32_t node, Vec3 p, double grading) const {
-    return nodes[node].least + grading * distance_to_box(p, nodes[node].box);
   }
 };
 

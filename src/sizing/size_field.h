@@ -24,7 +24,7 @@ struct SizingOptions {
   double min_size = 0;                        ///< floor of curvature- and gap-driven sizes
   double curvature = 12;                      ///< elements per full turn; 0: off
   double chord_height = 0;                    ///< largest distance of a chord to its arc; 0: off
-  double grading = 0.3;                       ///< growth of size over distance
+  double grading = 0.5;                       ///< growth of size over distance
   bool gaps = true;                           ///< chord height at most a quarter of the local gap
   std::map<std::uint32_t, double> face_size;  ///< by index of FaceId
   std::map<std::uint32_t, double> edge_size;
