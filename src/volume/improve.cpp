@@ -24,10 +24,8 @@ namespace curvetet {
 namespace {
 
 constexpr double kDegree = std::numbers::pi / 180;
-/// A round of reconnecting and smoothing is repeated at most this often.
-constexpr int kSweeps = 6;
-/// ... and while at least one in this many of the bad tets was changed for the better.
-constexpr std::size_t kWorthwhile = 50;
+/// Reconnecting and smoothing is repeated at most this often in a round, on ever fewer tets.
+constexpr int kSweeps = 10;
 /// A new vertex must raise the least sine of the worst tet by this much (two degrees): a vertex for nothing is a cost.
 constexpr double kInsertionGain = 0.035;
 /// Attempts to insert that may fail in a round, besides two for each that succeeded: where a body is thinner than its
@@ -81,28 +79,48 @@ class Improvement {
     return stopped_;
   }
 
+  /// Works on all bad tets, then on those near what was changed: elsewhere the same attempts would fail again.
   void reconnect_and_smooth() {
-    for (int sweep = 0; sweep < kSweeps && !stopped_; ++sweep) {
-      const std::size_t bad = collect_bad(goal_);
-      const std::size_t changed = reconnect() + smooth();
-      if (changed * kWorthwhile <= bad) break;
+    collect_bad(goal_);
+    for (int sweep = 0; sweep < kSweeps && !stopped_ && !bad_.empty(); ++sweep) {
+      touched_.clear();
+      reconnect();
+      std::vector<TetId> still_bad = bad_;
+      collect_bad_near_touched();
+      bad_.insert(bad_.end(), still_bad.begin(), still_bad.end());
+      smooth();
+      collect_bad_near_touched();
     }
   }
 
-  std::size_t collect_bad(double goal) {
+  void collect_bad(double goal) {
     bad_.clear();
     for (std::size_t k = 0; k < complex_.slots(); ++k) {
       if (is_inside(TetId(k)) && quality(TetId(k)) < goal) bad_.push_back(TetId(k));
     }
-    return bad_.size();
   }
 
-  std::size_t reconnect() {
-    std::size_t changed = 0;
-    for (std::size_t k = 0; k < bad_.size() && !should_stop(k); ++k) {
-      if (is_inside(bad_[k])) changed += reconnect(bad_[k]);
+  void collect_bad_near_touched() {
+    bad_.clear();
+    std::sort(touched_.begin(), touched_.end());
+    touched_.erase(std::unique(touched_.begin(), touched_.end()), touched_.end());
+    for (VertexId v : touched_) {
+      mesh_.star(v, star_);
+      for (TetId t : star_) {
+        if (is_inside(t) && quality(t) < goal_) bad_.push_back(t);
+      }
     }
-    return changed;
+    std::sort(bad_.begin(), bad_.end());
+    bad_.erase(std::unique(bad_.begin(), bad_.end()), bad_.end());
+  }
+
+  void reconnect() {
+    for (std::size_t k = 0; k < bad_.size() && !should_stop(k); ++k) {
+      if (!is_inside(bad_[k])) continue;
+      // All that replaces the tet shares a vertex with it.
+      const auto v = complex_.vertices(bad_[k]);
+      if (reconnect(bad_[k])) touched_.insert(touched_.end(), v.begin(), v.end());
+    }
   }
 
   bool reconnect(TetId t) {
@@ -121,21 +139,23 @@ class Improvement {
     return false;
   }
 
-  std::size_t smooth() {
-    std::vector<VertexId> movable;
-    collect_bad(goal_);
+  void smooth() {
+    movable_.clear();
     for (TetId t : bad_) {
+      if (!is_inside(t) || quality(t) >= goal_) continue;
       for (VertexId v : complex_.vertices(t)) {
-        if (vertices_.owner(v).kind == OwnerKind::interior && vertices_.origin(v) == Origin::interior)
-          movable.push_back(v);
+        if (vertices_.owner(v).kind == OwnerKind::interior && vertices_.origin(v) == Origin::interior) {
+          movable_.push_back(v);
+        }
       }
     }
-    std::sort(movable.begin(), movable.end());
-    movable.erase(std::unique(movable.begin(), movable.end()), movable.end());
-    std::size_t changed = 0;
-    for (std::size_t k = 0; k < movable.size() && !should_stop(k); ++k) changed += smooth(movable[k]);
-    result_.moves += changed;
-    return changed;
+    std::sort(movable_.begin(), movable_.end());
+    movable_.erase(std::unique(movable_.begin(), movable_.end()), movable_.end());
+    for (std::size_t k = 0; k < movable_.size() && !should_stop(k); ++k) {
+      if (!smooth(movable_[k])) continue;
+      touched_.push_back(movable_[k]);
+      ++result_.moves;
+    }
   }
 
   bool smooth(VertexId v) {
@@ -200,6 +220,7 @@ class Improvement {
   double goal_;
   bool stopped_ = false;
   std::vector<TetId> bad_, star_;
+  std::vector<VertexId> touched_, movable_;
   StarFacets facets_;
   StarOptimiser optimiser_;
   ImproveResult result_;
