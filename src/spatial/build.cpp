@@ -10,6 +10,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <limits>
 #include <string>
 
 #include "predicates/predicates.h"
@@ -163,7 +164,7 @@ class Builder {
   /// Invalid, or the vertex already there.
   VertexId insert(VertexId v) {
     const Vec3 p = positions_[v.value()];
-    const TetId first = kernel::walk(complex_, sites_, p, last_, stream_);
+    const TetId first = kernel::walk(complex_, sites_, p, start_for(p), stream_);
     for (const VertexId w : complex_.vertices(first)) {
       if (w != kInfinite && positions_[w.value()] == p) return w;
     }
@@ -171,6 +172,24 @@ class Builder {
     star_builder_.replace(complex_, marks_, v, tets_, boundary_, star_);
     last_ = star_.back();
     return VertexId();
+  }
+
+  /// The finite tet of the last star whose vertices are nearest to p. On surfaces, where tets are long and thin, this
+  /// saves most of the walk; elsewhere it costs no more than it saves.
+  TetId start_for(const Vec3& p) const {
+    TetId best = last_;
+    double least = std::numeric_limits<double>::infinity();
+    for (const TetId t : star_) {
+      double sum = 0;
+      for (int i = 0; i < 3; ++i) {
+        const VertexId v = complex_.vertex(t, i);
+        sum += v == kInfinite ? least : norm2(positions_[v.value()] - p);
+      }
+      if (sum >= least) continue;
+      least = sum;
+      best = t;
+    }
+    return best;
   }
 
   void grow(TetId first, const Vec3& p, VertexId tie_id) {
