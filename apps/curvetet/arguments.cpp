@@ -50,6 +50,11 @@ bool read_number(std::string_view text, double& value) {
   return error == std::errc() && end == text.data() + text.size();
 }
 
+/// An empty value, as an unset variable of a script gives, would pass for an option that was not given.
+CLI::Validator not_empty() {
+  return {[](std::string& text) { return text.empty() ? std::string("an empty value") : std::string(); }, ""};
+}
+
 [[noreturn]] void refuse(const std::string& message) { throw CLI::ValidationError(message); }
 
 void add_local_sizes(const std::vector<std::string>& texts, LocalSize::Kind kind, std::vector<LocalSize>& sizes) {
@@ -154,7 +159,7 @@ void add_repeatable(CLI::App& app, const std::string& name, std::vector<std::str
 void describe_sizes(CLI::App& app, RawMesh& raw, Options& options) {
   const std::string group = "Sizes";
   const auto length = [&](const char* name, std::optional<double>& value, const char* help) {
-    app.add_option(name, value, help)->type_name("LENGTH")->group(group);
+    app.add_option(name, value, help)->check(not_empty())->type_name("LENGTH")->group(group);
   };
   length("--size", options.size, "largest edge length; default: a tenth of the body's diagonal");
   length("--min-size", options.min_size, "floor of derived sizes; default: a thousandth of the size");
@@ -206,7 +211,10 @@ void describe_units_and_limits(CLI::App& app, RawMesh& raw, Options& options) {
       ->type_name("NUMBER")
       ->capture_default_str()
       ->group(group);
-  app.add_option("--time-limit", options.time_limit, "seconds for the whole run")->type_name("SECONDS")->group(group);
+  app.add_option("--time-limit", options.time_limit, "seconds for the whole run")
+      ->check(not_empty())
+      ->type_name("SECONDS")
+      ->group(group);
   app.add_option("--memory-limit", options.memory_limit, "for the mesh's own arrays, as 800M or 4G")
       ->transform(CLI::AsSizeValue(false))
       ->type_name("BYTES")
@@ -252,6 +260,7 @@ CLI::App* describe_check(CLI::App& app, CheckCommand& command) {
   check
       ->add_option("--unit-scale", command.unit_scale,
                    "length in the mesh of a unit of the CAD file; default: from the units of both")
+      ->check(not_empty())
       ->type_name("NUMBER");
   check->add_option("--input-unit", command.input_unit, "unit of a CAD file that carries none (BREP)")
       ->type_name("UNIT");

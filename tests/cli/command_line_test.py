@@ -1,0 +1,337 @@
+"""The built program from outside: what it says, what it writes, how it ends.
+
+usage: command_line_test.py CURVETET MAKE_BODIES [unittest arguments]
+"""
+
+import json
+import os
+import pathlib
+import pty
+import signal
+import subprocess
+import sys
+import tempfile
+import time
+import unittest
+
+PROGRAM = ""
+BODIES = pathlib.Path()
+PATIENCE = 120  # seconds; only a hung program needs as much
+
+
+def run(*arguments, **options):
+    return subprocess.run(
+        [PROGRAM, *map(str, arguments)],
+        stdin=subprocess.DEVNULL,
+        capture_output=True,
+        text=True,
+        timeout=PATIENCE,
+        **options,
+    )
+
+
+class CommandLineTest(unittest.TestCase):
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory(prefix="curvetet_cli_")
+        self.addCleanup(folder.cleanup)
+        self.folder = pathlib.Path(folder.name)
+
+    def files(self):
+        return sorted(path.name for path in self.folder.iterdir())
+
+    def expect(self, code, *arguments, **options):
+        result = run(*arguments, **options)
+        self.assertEqual(result.returncode, code, f"{arguments}\n{result.stdout}\n{result.stderr}")
+        if code not in (0, 5):
+            self.assertTrue(result.stderr.startswith("curvetet: "), result.stderr)
+        return result
+
+    def mesh_plate(self, *arguments):
+        mesh = self.folder / "plate.msh"
+        return mesh, self.expect(0, "mesh", BODIES / "plate.step", "-o", mesh, *arguments)
+
+
+class Help(CommandLineTest):
+    def test_help_and_version(self):
+        text = self.expect(0, "--help").stdout
+        for word in ("mesh", "info", "check", "picture", "Exit codes", "Examples"):
+            self.assertIn(word, text)
+        for command in ("mesh", "info", "check", "picture"):
+            self.assertIn("Examples", self.expect(0, command, "--help").stdout)
+        text = self.expect(0, "mesh", "--help").stdout
+        for option in ("--size", "--unit", "--recovery", "--face-size", "--time-limit", "LENGTH", "SECONDS"):
+            self.assertIn(option, text)
+        self.assertRegex(self.expect(0, "--version").stdout, r"^curvetet \d+\.\d+\.\d+")
+
+
+class UsageErrors(CommandLineTest):
+    def test_nothing_is_done(self):
+        box, mesh = BODIES / "box.step", self.folder / "box.msh"
+        wrong = [
+            [],
+            ["weave"],
+            ["mesh"],
+            ["mesh", box],
+            ["mesh", box, "-o"],
+            ["mesh", box, "-o", mesh, "--frobnicate"],
+            ["mesh", box, "-o", self.folder / "box.step"],
+            ["mesh", box, "-o", self.folder / "box"],
+            ["mesh", box, "-o", mesh, "-o", mesh],
+            ["mesh", box, "-o", mesh, "--report", mesh],
+            ["mesh", box, "-o", box, "--format", "msh"],
+            ["mesh", box, "-o", mesh, "--format", "obj"],
+            ["mesh", box, "-o", self.folder / "box.vtu", "--format", "msh22"],
+            ["mesh", box, "-o", mesh, "--recovery", "magic"],
+            ["mesh", box, "-o", mesh, "--quiet", "--verbose"],
+            ["mesh", box, "-o", mesh, "--face-size", "1"],
+            ["mesh", box, "-o", mesh, "--face-size", "=1"],
+            ["mesh", box, "-o", mesh, "--face-size", "1=x"],
+            ["mesh", box, "-o", mesh, "--face-size", "1=-1"],
+            ["mesh", box, "-o", mesh, "--face-size", "no such face=1"],
+            ["mesh", box, "-o", mesh, "--unit", "furlong"],
+            ["mesh", box, "-o", mesh, "--grading", "0"],
+            ["mesh", box, "-o", mesh, "--curvature", "-1"],
+            ["mesh", box, "-o", mesh, "--time-limit", "0"],
+            ["mesh", box, "-o", mesh, "--threads", "-3"],
+            ["mesh", box, "-o", mesh, "--radius-edge", "nan"],
+            ["mesh", box, "-o", mesh, "--memory-limit", "much"],
+            ["info"],
+            ["check"],
+            ["picture", mesh],
+            ["picture", mesh, "-o", self.folder / "a.png", "--cut", "w=1"],
+            ["picture", mesh, "-o", self.folder / "a.png", "--cut", "x=2"],
+            ["picture", mesh, "-o", self.folder / "a.png", "--size", "0x0"],
+        ]
+        wrong += [["mesh", box, "-o", mesh, "--size", size] for size in ("0", "-1", "nan", "inf", "1e-300", "1e400", "x", "")]
+        before = box.read_bytes()
+        for arguments in wrong:
+            with self.subTest(arguments=arguments):
+                result = self.expect(2, *arguments)
+                self.assertEqual(result.stdout, "")
+                self.assertEqual(self.files(), [])
+        self.assertEqual(box.read_bytes(), before)
+
+
+class BadInput(CommandLineTest):
+    def expect_refused(self, path):
+        mesh, report = self.folder / "out.msh", self.folder / "out.json"
+        result = self.expect(3, "mesh", path, "-o", mesh, "--report", report)
+        self.assertIn("error:", result.stderr)
+        self.assertFalse(mesh.exists())
+        errors = json.loads(report.read_text())["errors"]
+        self.assertEqual(len(errors), 1)
+        report.unlink()
+        return errors[0]["code"]
+
+    def test_missing_folder_empty(self):
+        self.assertEqual(self.expect_refused(self.folder / "none.step"), "file_not_found")
+        self.assertEqual(self.expect_refused(self.folder), "file_unreadable")
+        empty = self.folder / "empty.step"
+        empty.write_bytes(b"")
+        self.assertEqual(self.expect_refused(empty), "empty_file")
+        self.assertEqual(self.files(), ["empty.step"])
+
+    def test_truncated_and_garbage(self):
+        whole = (BODIES / "plate.step").read_bytes()
+        for name, content in (
+            ("half.step", whole[: len(whole) // 2]),
+            ("head.step", whole[:200]),
+            ("noise.step", bytes(range(256)) * 50),
+            ("noise.brep", b"DBRep_DrawableShape\n" + bytes(range(256)) * 50),
+            ("noise.igs", b"S 1\n" * 400),
+        ):
+            with self.subTest(name=name):
+                path = self.folder / name
+                path.write_bytes(content)
+                self.expect_refused(path)
+                path.unlink()
+        self.assertEqual(self.files(), [])
+
+    def test_other_commands(self):
+        self.expect(3, "info", self.folder / "none.step")
+        self.expect(3, "check", self.folder / "none.msh")
+        self.expect(3, "check", BODIES / "box.step")
+        self.expect(3, "picture", self.folder / "none.msh", "-o", self.folder / "a.png")
+        self.assertEqual(self.files(), [])
+
+
+class Outputs(CommandLineTest):
+    def test_every_format_and_the_check(self):
+        names = ["a.msh", "a.msh2", "a.vtu", "a.mesh", "a.stl", "a.data"]
+        outputs = [argument for name in names for argument in ("-o", self.folder / name)]
+        result = self.expect(0, "mesh", BODIES / "plate.step", *outputs, "--report", self.folder / "a.json",
+                             "--format", "msh-ascii")
+        self.assertEqual(self.files(), sorted(names + ["a.json"]))
+        for word in ("tetrahedra", "worst dihedral", "default", "volume", "rounds", "time", "valid"):
+            self.assertIn(word, result.stdout)
+        report = json.loads((self.folder / "a.json").read_text())
+        self.assertTrue(report["valid"])
+        self.assertEqual(report["errors"], [])
+        self.assertEqual(len(report["faces"]), 7)
+        self.assertTrue((self.folder / "a.data").read_text().startswith("$MeshFormat\n4.1 0 8"))
+        for name in names[:4]:
+            with self.subTest(name=name):
+                self.expect(0, "check", self.folder / name, BODIES / "plate.step")
+                check = json.loads(self.expect(0, "check", self.folder / name, "--json").stdout)
+                self.assertTrue(check["valid"])
+                self.assertEqual(check["counts"]["tets"], report["counts"]["tets"])
+
+    def test_units(self):
+        mesh, _ = self.mesh_plate("--unit", "m", "--size", "0.004")
+        check = json.loads(self.expect(0, "check", mesh, BODIES / "plate.step", "--json").stdout)
+        self.assertEqual(check["unit"], "m")
+        self.assertAlmostEqual(check["solids"][0]["volume"] * 1e9, 6000 - 3.14159265 * 9 * 30, delta=60)
+
+    def test_local_size_makes_it_finer(self):
+        counts = []
+        for extra in ([], ["--face-size", "1=1.5"]):
+            self.mesh_plate("--size", "6", "--report", self.folder / "r.json", *extra)
+            counts.append(json.loads((self.folder / "r.json").read_text())["counts"]["tets"])
+        self.assertLess(counts[0], counts[1])
+
+    def test_same_bytes_for_any_number_of_threads(self):
+        contents = []
+        for threads in ("1", "2", "3"):
+            mesh, _ = self.mesh_plate("--threads", threads, "--size", "3")
+            contents.append(mesh.read_bytes())
+        self.assertEqual(contents[0], contents[1])
+        self.assertEqual(contents[0], contents[2])
+
+    def test_quiet_says_nothing(self):
+        _, result = self.mesh_plate("--quiet")
+        self.assertEqual((result.stdout, result.stderr), ("", ""))
+
+    def test_places_that_cannot_be_written(self):
+        (self.folder / "file").write_text("")
+        (self.folder / "folder.msh").mkdir()
+        before = self.files()
+        for place in ("no/such/folder/a.msh", "file/a.msh", "folder.msh"):
+            with self.subTest(place=place):
+                self.expect(3, "mesh", BODIES / "box.step", "-o", self.folder / place)
+        self.expect(3, "mesh", BODIES / "box.step", "-o", self.folder / "a.msh", "--report", self.folder / "no/r.json")
+        if os.path.exists("/dev/full"):
+            self.expect(3, "mesh", BODIES / "box.step", "-o", "/dev/full", "--format", "msh")
+        self.assertEqual(self.files(), before)
+
+    def test_an_older_mesh_is_replaced_only_by_a_whole_one(self):
+        mesh = self.folder / "a.msh"
+        mesh.write_text("old")
+        self.expect(3, "mesh", self.folder / "none.step", "-o", mesh)
+        self.assertEqual(mesh.read_text(), "old")
+        self.expect(0, "mesh", BODIES / "box.step", "-o", mesh)
+        self.assertNotEqual(mesh.read_bytes()[:3], b"old")
+        self.assertEqual(self.files(), ["a.msh"])
+
+
+class InfoAndPicture(CommandLineTest):
+    def test_info(self):
+        text = self.expect(0, "info", BODIES / "plate.step").stdout
+        self.assertIn("cylinder", text)
+        self.assertIsInstance(json.loads(self.expect(0, "info", BODIES / "plate.step", "--json").stdout), dict)
+
+    def test_picture(self):
+        mesh, _ = self.mesh_plate()
+        picture = self.folder / "a.png"
+        for extra in ([], ["--cut", "x=0.5"], ["--size", "200x100", "--cut", "z=0.3"]):
+            self.expect(0, "picture", mesh, "-o", picture, *extra)
+            self.assertTrue(picture.read_bytes().startswith(b"\x89PNG"))
+            picture.unlink()
+        self.expect(3, "picture", mesh, "-o", self.folder / "no/a.png")
+
+
+class InvalidMeshes(CommandLineTest):
+    def test_check_finds_an_inverted_tet(self):
+        mesh, _ = self.mesh_plate("--format", "msh22")
+        lines = mesh.read_text().split("\n")
+        at = next(i for i, line in enumerate(lines) if line.split()[1:3] == ["4", "2"])
+        words = lines[at].split()
+        words[-1], words[-2] = words[-2], words[-1]
+        lines[at] = " ".join(words)
+        mesh.write_text("\n".join(lines))
+        result = self.expect(5, "check", mesh)
+        self.assertIn("NOT VALID", result.stdout)
+        self.assertFalse(json.loads(self.expect(5, "check", mesh, "--json").stdout)["valid"])
+
+    def test_check_finds_the_wrong_body(self):
+        mesh, _ = self.mesh_plate()
+        self.expect(5, "check", mesh, BODIES / "ball.brep")
+
+
+class Stopping(CommandLineTest):
+    # The bore at this size takes minutes, so that there is something to stop.
+    LONG = ["--size", "0.1"]
+
+    def start(self, *arguments, **options):
+        return subprocess.Popen([PROGRAM, *map(str, arguments)], text=True, **options)
+
+    def test_interrupt_while_meshing(self):
+        for number in (signal.SIGINT, signal.SIGTERM):
+            with self.subTest(signal=number):
+                report = self.folder / "r.json"
+                program = self.start("mesh", BODIES / "plate.step", "-o", self.folder / "a.msh", "--report", report,
+                                     *self.LONG, stdout=subprocess.PIPE, stderr=subprocess.PIPE)
+                for line in program.stderr:
+                    if "load" not in line:
+                        break
+                time.sleep(0.3)
+                begin = time.monotonic()
+                program.send_signal(number)
+                _, said = program.communicate(timeout=PATIENCE)
+                took = time.monotonic() - begin
+                self.assertEqual(program.returncode, 4, said)
+                # A second is what is promised; the rest is for machines that are busy with other tests.
+                self.assertLess(took, 3)
+                self.assertEqual(json.loads(report.read_text())["errors"][0]["code"], "cancelled")
+                self.assertEqual(self.files(), ["r.json"])
+                report.unlink()
+
+    def test_interrupt_while_reading(self):
+        program = self.start("mesh", BODIES / "plate.step", "-o", self.folder / "a.msh", *self.LONG,
+                             stdout=subprocess.PIPE, stderr=subprocess.PIPE)
+        program.stderr.readline()
+        program.send_signal(signal.SIGINT)
+        _, said = program.communicate(timeout=PATIENCE)
+        self.assertEqual(program.returncode, 4, said)
+        self.assertEqual(self.files(), [])
+
+    def test_time_limit(self):
+        begin = time.monotonic()
+        report = self.folder / "r.json"
+        self.expect(4, "mesh", BODIES / "plate.step", "-o", self.folder / "a.msh", "--time-limit", "2", "--report", report,
+                    *self.LONG)
+        self.assertLess(time.monotonic() - begin, 10)
+        self.assertEqual(json.loads(report.read_text())["errors"][0]["code"], "time_limit")
+        self.assertEqual(self.files(), ["r.json"])
+
+    def test_progress_bar_on_a_terminal(self):
+        ours, theirs = pty.openpty()
+        program = self.start("mesh", BODIES / "box.step", "-o", self.folder / "a.msh", stdout=subprocess.DEVNULL,
+                             stderr=theirs)
+        os.close(theirs)
+        shown = b""
+        while True:
+            try:
+                part = os.read(ours, 4096)
+            except OSError:  # the other end is closed
+                break
+            if not part:
+                break
+            shown += part
+        os.close(ours)
+        self.assertEqual(program.wait(timeout=PATIENCE), 0)
+        self.assertIn(b"\r[#", shown)
+        self.assertTrue(shown.endswith(b"\r\x1b[K"), shown[-80:])
+
+
+def main():
+    global PROGRAM, BODIES
+    PROGRAM = os.path.abspath(sys.argv[1])
+    with tempfile.TemporaryDirectory(prefix="curvetet_bodies_") as folder:
+        subprocess.run([sys.argv[2], folder], check=True, stdout=subprocess.DEVNULL)
+        BODIES = pathlib.Path(folder)
+        result = unittest.main(argv=[sys.argv[0], *sys.argv[3:]], exit=False).result
+    sys.exit(0 if result.wasSuccessful() else 1)
+
+
+if __name__ == "__main__":
+    main()
