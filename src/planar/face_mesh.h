@@ -142,6 +142,10 @@ class FaceMesh {
   bool remove_node(NodeId n, const FlipWanted& wanted, std::vector<TriangleId>& changed);
   bool remove_node(NodeId n);
 
+  /// Gives the vertices other ids, as when those made for one face alone become the body's. REQUIRED: different
+  /// vertices keep different ids.
+  void rename(const std::function<VertexId(VertexId)>& new_id);
+
   /// As build, then inserts every former node that was on no constrained edge and lies strictly inside the new domain;
   /// the vertices of the others are listed in `dropped`. On faults the former mesh stays. Node numbers change.
   std::vector<LoopFault> rebuild(const FaceInput& input, std::vector<VertexId>& dropped);

@@ -124,6 +124,14 @@ bool FaceMesh::replace(const std::vector<std::array<NodeId, 3>>& triangles) {
   return true;
 }
 
+void FaceMesh::rename(const std::function<VertexId(VertexId)>& new_id) {
+  index_.clear();
+  for (std::uint32_t n = 0; n < nodes_.size(); ++n) {
+    nodes_[NodeId(n)].vertex = new_id(nodes_[NodeId(n)].vertex);
+    index_.add(nodes_[NodeId(n)].vertex, NodeId(n));
+  }
+}
+
 std::vector<LoopFault> FaceMesh::rebuild(const FaceInput& input, std::vector<VertexId>& dropped) {
   dropped.clear();
   std::vector<bool> constrained(nodes_.size(), false);

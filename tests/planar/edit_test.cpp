@@ -313,6 +313,14 @@ TEST(Replace, AcceptsOnlyTheSameDomain) {
   expect_valid(other);
 }
 
+TEST(Rename, NodesAreFoundByTheNewIds) {
+  FaceMesh mesh = built(plate());
+  mesh.rename([](VertexId v) { return VertexId(v.value() * 3 + 500); });
+  expect_valid(mesh);
+  EXPECT_TRUE(mesh.nodes_of(VertexId(2U)).empty());
+  EXPECT_EQ(mesh.nodes_of(VertexId(506U)).size(), 1U);
+}
+
 TEST(Rebuild, KeepsInteriorNodesThatStayInside) {
   FaceMesh mesh = built(plate());
   std::vector<TriangleId> changed;
