@@ -23,7 +23,7 @@ namespace {
 
 constexpr int kHilbertBits = 16;  ///< per coordinate
 constexpr std::size_t kSmallestRound = 64;
-constexpr int kRoundBits = 2;  ///< a round is 2^kRoundBits times larger than all before it together, nearly
+constexpr int kRoundBits = 2;  ///< all rounds before one hold 2^-kRoundBits of the points up to it
 
 std::uint64_t mix(std::uint64_t x) {
   x = (x ^ (x >> 30)) * 0xBF58476D1CE4E5B9ULL;

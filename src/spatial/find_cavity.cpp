@@ -9,6 +9,9 @@
 // The base never goes: the finite tets that contain the point, or the ghosts whose hull facets it lies strictly beyond
 // (leaving one out would make the hull overlap itself). If one has to go, the insertion is refused.
 //
+// What is left is connected: from a generic point of a part without the base, the way to p would leave the part through
+// a facet of its boundary that p does not see, or at p itself, or through the hull into a ghost of the base.
+//
 // A locked facet is boundary from both its sides, also where the flood came around its rim; one of the two sides is
 // invisible, or the point is in its plane and both go. Facets of ghosts through infinity need no test: beyond the hull
 // the base is exact, and a ghost coplanar with the point stays only together with its finite neighbour, whose own
@@ -168,7 +171,7 @@ class CavitySearch {
     return true;
   }
 
-  /// Lists again what is in the cavity and connected with the base, and its boundary.
+  /// Lists again what is in the cavity, and its boundary.
   void collect() {
     std::vector<TetId>& tets = cavity_.tets;
     std::erase_if(tets, [&](TetId t) { return !inside(t); });
@@ -235,7 +238,7 @@ class CavitySearch {
   const kernel::Sites sites_;
   Marks& marks_;
   const VertexId vertex_;
-  const Vec3 p_;
+  const Vec3 p_;  ///< where the vertex is
   Cavity cavity_;
   std::vector<TetId> queue_;
 };

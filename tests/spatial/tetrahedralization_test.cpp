@@ -154,9 +154,30 @@ TEST_P(OnPointSet, LocateFindsATetThatHoldsThePoint) {
   }
 }
 
+TEST_P(OnPointSet, TheScanThatBacksTheWalkFindsATetToo) {
+  const Context context;
+  const VertexStore store = make_store(GetParam(), 60, 9);
+  Tetrahedralization mesh(store, 4);
+  ASSERT_TRUE(mesh.build(all_vertices(store), context).ok());
+  oracle::PointSource everywhere(PointSet::cube, 77);
+  kernel::Stream stream(1);
+  for (int k = 0; k < 50; ++k) {
+    const Vec3 p = everywhere.next();
+    const TetId scanned = kernel::walk(mesh.complex(), {store.positions(), nullptr}, p, TetId(), stream);
+    ASSERT_TRUE(scanned.valid());
+    // A ghost, where several see the point, need not be the same one.
+    if (mesh.complex().is_ghost(scanned)) {
+      ASSERT_TRUE(mesh.complex().is_ghost(mesh.locate(p)));
+    } else {
+      ASSERT_EQ(mesh.locate(p), scanned);
+    }
+  }
+}
+
 TEST(Ring, TurnsRightHandedAroundTheEdge) {
   VertexStore store;
-  for (const Vec3 p : {Vec3{0, 0, -0.125}, Vec3{0, 0, 0.125}, Vec3{0.25, 0, 0}, Vec3{0, 0.25, 0}, Vec3{-0.25, -0.25, 0}}) {
+  for (const Vec3 p :
+       {Vec3{0, 0, -0.125}, Vec3{0, 0, 0.125}, Vec3{0.25, 0, 0}, Vec3{0, 0.25, 0}, Vec3{-0.25, -0.25, 0}}) {
     store.add(p, {}, {}, Origin::interior);
   }
   Tetrahedralization mesh(store, 1);
@@ -217,6 +238,38 @@ TEST(Insert, RefusesADuplicateAndChangesNothing) {
   EXPECT_EQ(mesh.insert(twin), Refusal::duplicate);
   EXPECT_EQ(finite_tets(mesh), before);
   EXPECT_FALSE(mesh.contains(twin));
+}
+
+/// A vertex that sees hundreds of facets, beyond what the table of edges holds.
+TEST(Insert, AHubOfManyTets) {
+  const Context context;
+  VertexStore store = make_store(PointSet::sphere, 1000, 1);
+  const std::vector<VertexId> ids = all_vertices(store);
+  Tetrahedralization mesh(store, 1);
+  ASSERT_TRUE(mesh.build(ids, context).ok());
+  const VertexId hub = store.add({0, 0, 0}, {}, {}, Origin::interior);
+  ASSERT_EQ(mesh.insert(hub), Refusal::none);
+  EXPECT_GT(mesh.last_star().size(), 500U);
+  expect_valid(mesh);
+  Tetrahedralization built(store, 1);
+  ASSERT_TRUE(built.build(all_vertices(store), context).ok());
+  EXPECT_EQ(finite_tets(mesh), finite_tets(built));
+}
+
+TEST(Insert, FarPointsBeyondTheHullInEveryDirection) {
+  const Context context;
+  VertexStore store = make_store(PointSet::flat_and_apex, 60, 1);
+  Tetrahedralization mesh(store, 1);
+  ASSERT_TRUE(mesh.build(all_vertices(store), context).ok());
+  for (const double x : {-1.0, 0.0, 1.0}) {
+    for (const double y : {-1.0, 0.0, 1.0}) {
+      for (const double z : {-1.0, 0.0, 1.0}) {
+        const Refusal refusal = mesh.insert(store.add({x, y, z}, {}, {}, Origin::interior));
+        EXPECT_TRUE(refusal == Refusal::none || refusal == Refusal::duplicate);
+      }
+    }
+  }
+  expect_valid(mesh);
 }
 
 TEST(Insert, FindingACavityChangesNothing) {
