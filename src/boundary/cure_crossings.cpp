@@ -14,6 +14,8 @@ namespace {
 
 // A cure takes a few points per crossing; many more mean that refinement does not separate what crosses.
 constexpr std::size_t kPointsPerPair = 8;
+// More crossings than this are no thin wall but a surface mesh gone wrong.
+constexpr std::size_t kPairsPerTriangle = 4;
 
 class CrossingCure {
  public:
@@ -27,7 +29,7 @@ class CrossingCure {
     for (result_.rounds = 0; result_.rounds <= options_.rounds; ++result_.rounds) {
       if (context_.should_stop()) return context_.stop_error("surface crossings");
       triangles_ = surface_triangles(conjoint_.boundary());
-      const auto pairs = crossing_pairs(conjoint_.vertices(), triangles_);
+      const auto pairs = crossing_pairs(conjoint_.vertices(), triangles_, kPairsPerTriangle * triangles_.size());
       if (result_.rounds == 0) {
         result_.first_pairs = pairs.size();
         budget_ = kPointsPerPair * pairs.size() + triangles_.size();
@@ -35,7 +37,9 @@ class CrossingCure {
       context_.log(LogLevel::debug, fmt::format("crossings, round {}: {} pairs of {} triangles", result_.rounds,
                                                 pairs.size(), triangles_.size()));
       if (pairs.empty()) return result_;
-      if (result_.rounds == options_.rounds || result_.points > budget_ || !refine(pairs)) {
+      const bool hopeless = result_.rounds == options_.rounds || result_.points > budget_ ||
+                            pairs.size() >= kPairsPerTriangle * triangles_.size();
+      if (hopeless || !refine(pairs)) {
         for (const auto& [i, j] : pairs) report(i, j);
         return result_;
       }
@@ -52,6 +56,7 @@ class CrossingCure {
   bool refine(const std::vector<std::pair<std::uint32_t, std::uint32_t>>& pairs) {
     bool any = false;
     for (const auto& [i, j] : pairs) {
+      if (context_.should_stop()) return any;
       const SurfaceTriangle &a = triangles_[i], &b = triangles_[j];
       if (!still_there(a) || !still_there(b)) continue;
       const double da = deviation_of(a), db = deviation_of(b);

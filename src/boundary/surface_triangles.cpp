@@ -77,9 +77,9 @@ class TriangleTree {
     if (!triangles.empty()) build(0, order_.size());
   }
 
-  std::vector<std::pair<std::uint32_t, std::uint32_t>> crossings() const {
+  std::vector<std::pair<std::uint32_t, std::uint32_t>> crossings(std::size_t limit) const {
     std::vector<std::pair<std::uint32_t, std::uint32_t>> found;
-    for (std::uint32_t i = 0; i < triangles_.size(); ++i) query(i, found);
+    for (std::uint32_t i = 0; i < triangles_.size() && found.size() < limit; ++i) query(i, found);
     std::sort(found.begin(), found.end());
     return found;
   }
@@ -177,8 +177,9 @@ bool triangles_cross(const VertexStore& vertices, const Triple& a, const Triple&
 }
 
 std::vector<std::pair<std::uint32_t, std::uint32_t>> crossing_pairs(const VertexStore& vertices,
-                                                                    const std::vector<SurfaceTriangle>& triangles) {
-  return TriangleTree(vertices, triangles).crossings();
+                                                                    const std::vector<SurfaceTriangle>& triangles,
+                                                                    std::size_t limit) {
+  return TriangleTree(vertices, triangles).crossings(limit);
 }
 
 }  // namespace curvetet

@@ -3,6 +3,8 @@
 
 #include <array>
 #include <cstdint>
+#include <limits>
+#include <utility>
 #include <vector>
 
 #include "conjoint/surface_meshes.h"
@@ -28,9 +30,10 @@ FacetKey facet_key(VertexId a, VertexId b, VertexId c);
 /// Do two triangles meet elsewhere than in shared vertices and edges? Exact.
 bool triangles_cross(const VertexStore& vertices, const std::array<VertexId, 3>& a, const std::array<VertexId, 3>& b);
 
-/// All pairs (i < j) of triangles that cross, sorted. Bounding volume hierarchy, then the exact test; O(n log n +
-/// pairs).
-std::vector<std::pair<std::uint32_t, std::uint32_t>> crossing_pairs(const VertexStore& vertices,
-                                                                    const std::vector<SurfaceTriangle>& triangles);
+/// Pairs (i < j) of triangles that cross, sorted; no more than `limit`. Bounding volume hierarchy, then the exact test;
+/// O(n log n + pairs).
+std::vector<std::pair<std::uint32_t, std::uint32_t>> crossing_pairs(
+    const VertexStore& vertices, const std::vector<SurfaceTriangle>& triangles,
+    std::size_t limit = std::numeric_limits<std::size_t>::max());
 
 }  // namespace curvetet
