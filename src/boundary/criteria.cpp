@@ -28,6 +28,8 @@ constexpr double kBallTolerance = 0.01;
 constexpr double kWrap = std::numbers::pi / 2;
 /// Distance of an arc's middle from the chord's over the chord: on a circle the angle over eight, here of 80 degrees.
 constexpr double kBend = 0.175;
+/// Component of a pole's edge around the pole over its length: an angle of about 55 degrees around the pole.
+constexpr double kSlant = 1;
 /// Working length below which an arc is a point.
 constexpr double kNoLength = 1e-9;
 
@@ -106,13 +108,19 @@ double arc_estimate(const Corner& a, const Corner& b) {
   return std::min(norm(d.x * a.dx + d.y * a.dy), norm(d.x * b.dx + d.y * b.dy));
 }
 
+bool at_pole(const Corner& a) { return norm2(a.normal) == 0; }
+
 bool bent(const Corner& a, const Corner& b) {
   const double chord = distance(a.position, b.position);
   if (arc_estimate(a, b) > kWrap * chord + kNoLength) return true;
-  // At a pole the direction of the derivative depends on where it is approached from.
-  if (norm2(a.normal) == 0 || norm2(b.normal) == 0) return false;
-  // Hermite's cubic has its middle at this distance from the chord's.
   const Vec2 d = b.q - a.q;
+  if (at_pole(a) || at_pole(b)) {
+    // There the derivative says nothing; an edge that leaves the other end askew circles around the pole.
+    if (at_pole(a) && at_pole(b)) return false;
+    const Corner& away = at_pole(a) ? b : a;
+    return norm(d.x * away.dx + d.y * away.dy - (b.position - a.position)) > kSlant * chord;
+  }
+  // Hermite's cubic has its middle at this distance from the chord's.
   return norm(d.x * (a.dx - b.dx) + d.y * (a.dy - b.dy)) / 8 > kBend * chord + kNoLength;
 }
 

@@ -31,8 +31,10 @@ double alignment(const Corner& a, const Corner& b, const Corner& c);
 
 /// Length of the surface's curve over the chart segment ab, estimated from below by the derivatives at its ends.
 double arc_estimate(const Corner& a, const Corner& b);
-/// The chord of ab is no picture of its curve on the surface: by the derivatives at the ends, the curve wraps around, or its
-/// middle is far from the chord's. What lies left of the one may then lie right of the other.
+/// The derivatives collapse at a corner.
+bool at_pole(const Corner& a);
+/// The chord of ab is no picture of its curve on the surface: by the derivatives at the ends, the curve wraps around,
+/// or its middle is far from the chord's. What lies left of the one may then lie right of the other.
 bool bent(const Corner& a, const Corner& b);
 
 /// Whether triangles (a,b,c) and (b,a,d) should become (a,d,c) and (d,b,c). In order: no bent edge, fewer

@@ -112,7 +112,7 @@ class FaceRefiner {
     const FaceTriangle& t = mesh_.triangle(id);
     const Corner &a = corner(t.node[0]), &b = corner(t.node[1]), &c = corner(t.node[2]);
     const double size = size_of(t);
-    if (bent(a, b) || bent(b, c) || bent(c, a)) {
+    if (must_split(a, b) || must_split(b, c) || must_split(c, a)) {
       return {Need::bend, 1e6 + std::max({arc_estimate(a, b), arc_estimate(b, c), arc_estimate(c, a)}) / size};
     }
     if (degenerate(a, b, c)) return {};
@@ -135,6 +135,9 @@ class FaceRefiner {
       return {Need::shape, 0.01 * radius / wanted};
     return {};
   }
+
+  /// Edges to a pole are flipped when they are askew; points on them would only come nearer to the pole.
+  static bool must_split(const Corner& a, const Corner& b) { return !at_pole(a) && !at_pole(b) && bent(a, b); }
 
   static bool folded(const Corner& a, const Corner& b, const Corner& c) {
     const Vec3 normal = normalized(cross(b.position - a.position, c.position - a.position));
@@ -172,7 +175,7 @@ class FaceRefiner {
       if (t.use[i] != -1) continue;
       const Corner &a = corner(t.node[(i + 1) % 3]), &b = corner(t.node[(i + 2) % 3]);
       const double length = need == Need::bend ? arc_estimate(a, b) : distance(a.position, b.position);
-      if (need == Need::bend && !bent(a, b)) continue;
+      if (need == Need::bend && !must_split(a, b)) continue;
       if (length > best) {
         best = length;
         at = i;
@@ -200,7 +203,7 @@ class FaceRefiner {
     if (!holder) return false;
     const Vec3 position = snap(point.at.value);
     const double size = sizes_.at_face(face_, position);
-    if (crowded(position, *holder, spacing(mesh_.triangle(from), need, size), size)) return false;
+    if (crowded(position, *holder, from, spacing(mesh_.triangle(from), need, size), size)) return false;
     if (mesh_.judge_insert(point.q, *holder) != PlanarRefusal::none) return false;
     const VertexId vertex(static_cast<std::uint32_t>(kLocalVertices + added_.size()));
     const FaceNode node{vertex, point.q};
@@ -209,14 +212,18 @@ class FaceRefiner {
     added_.push_back({position, mesh_.chart.to_uv(point.q)});
     const NodeId made = mesh_.insert(vertex, point.q, *holder, wanted_, changed_);
     CURVETET_CHECK(made.value() + 1 == corners_.size());
+    // The new node's own edges too: what the chart or a bent edge forbade before may be legal now.
+    mesh_.restore(changed_, wanted_, restored_);
     enqueue(changed_);
+    enqueue(restored_);
     return true;
   }
 
   /// Too close to a node, or within the diametral sphere of a segment, among the triangles whose spheres hold the
   /// point.
-  bool crowded(Vec3 p, TriangleId holder, double spacing, double size) {
+  bool crowded(Vec3 p, TriangleId holder, TriangleId from, double spacing, double size) {
     cavity_.assign(1, holder);
+    if (from != holder) cavity_.push_back(from);
     for (std::size_t k = 0; k < cavity_.size(); ++k) {
       const FaceTriangle& t = mesh_.triangle(cavity_[k]);
       for (std::size_t i = 0; i < 3; ++i) {
@@ -260,7 +267,7 @@ class FaceRefiner {
   std::vector<std::uint32_t> stamps_;  ///< by triangle: entries with an older stamp are stale
   std::priority_queue<Entry> queue_;
   std::vector<AddedVertex> added_;
-  std::vector<TriangleId> changed_, cavity_;
+  std::vector<TriangleId> changed_, restored_, cavity_;
 };
 
 }  // namespace
