@@ -37,11 +37,10 @@ namespace {
 constexpr double kFacing = 0.5;             ///< cosine between the normals and the direction across the gap
 constexpr double kFold = 3;                 ///< way along the same face against the way through space
 constexpr double kSteepest = 0.5;           ///< gap over distance to a shared edge, above which a wedge is no gap
-constexpr double kSpacing = 1;              ///< patches are split while longer than this part of the demand
 constexpr int kToAndFro = 4;                ///< projections towards the closest pair
 constexpr std::size_t kNearestPatches = 2;  ///< of each face that a sample is projected from
 constexpr std::size_t kBlock = 256;         ///< patches or edge samples per task
-constexpr std::size_t kMostProbes = 20000;  ///< per task
+constexpr std::size_t kMostProbes = 20000;  ///< per patch, or stretch between two samples of an edge
 
 /// The size at which the chord height is a quarter of the gap.
 double gap_size(double gap, double curvature) { return std::sqrt(2 * gap / curvature); }
@@ -124,6 +123,7 @@ class GapSearch {
     if (!curved(patch)) return;
     const double reach = 2 * reach_of(patch.curvature, size_at(patch));
     scene_.tree.near(patch.box, reach, candidates);
+    probes_ = 0;
     search(patch, candidates);
   }
 
@@ -145,6 +145,7 @@ class GapSearch {
     });
     if (candidates.empty()) return;
     const auto curve = edge.curve->clone();
+    probes_ = 0;
     search(id, *curve, from, to, candidates);
   }
 
@@ -176,7 +177,7 @@ class GapSearch {
       demand = std::min(
           demand,
           ask({patch.point, patch.normal, patch.curvature, size, patch.face, EdgeId(), patch.middle()}, near, &patch));
-    if (patch.extent() <= kSpacing * std::max(demand, least_size())) return;
+    if (patch.extent() <= spacing(scene_.input.options) * std::max(demand, least_size())) return;
     const auto [one, two] = halves(patch);
     for (const auto& [low, high] : {one, two})
       if (scene_.input.domains[patch.face.value()]->meets(low, high))
@@ -192,7 +193,7 @@ class GapSearch {
     const double demand =
         ask({middle.point, middle.towards, middle.curvature, size, FaceId(), id, {}}, candidates, nullptr);
     const double length = distance(from.point, middle.point) + distance(middle.point, to.point);
-    if (length <= kSpacing * std::max(demand, least_size())) return;
+    if (length <= spacing(scene_.input.options) * std::max(demand, least_size())) return;
     search(id, curve, from, middle, candidates);
     search(id, curve, middle, to, candidates);
   }

@@ -24,6 +24,10 @@ struct Patch {
   double extent() const { return std::max(length_u, length_v); }
 };
 
+/// Spacing of sources over the demanded size, such that the field between them is at most 26 % larger than demanded, 10
+/// % on average.
+double spacing(const SizingOptions& options);
+
 /// Measures the cell [low, high] of a face: one evaluation in the middle, eight around it.
 Patch measure_patch(FaceId face, const FaceBending& bending, Vec2 low, Vec2 high, SurfaceBending* middle = nullptr);
 
