@@ -9,6 +9,11 @@ if(CURVETET_SANITIZE)
   target_link_options(curvetet_flags INTERFACE -fsanitize=address,undefined)
 endif()
 
+set(CURVETET_OPENCASCADE TKXDESTEP TKXDEIGES TKXCAF TKLCAF TKCAF TKVCAF TKCDF TKSTEP TKSTEPBase TKSTEPAttr TKSTEP209
+  TKIGES TKXSBase TKShHealing TKBool TKBO TKPrim TKFillet TKOffset TKTopAlgo TKMesh TKBRep TKGeomAlgo TKGeomBase TKG3d
+  TKG2d TKMath TKernel)
+set(CURVETET_ROOMS)
+
 function(curvetet_room name)
   cmake_parse_arguments(ROOM "" "" "ROOMS;LINK" ${ARGN})
   file(GLOB sources CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/src/${name}/*.cpp)
@@ -25,7 +30,7 @@ function(curvetet_room name)
   endforeach()
   if(name STREQUAL "cad")
     target_include_directories(curvetet_cad SYSTEM ${scope} ${OpenCASCADE_INCLUDE_DIR})
-    target_link_libraries(curvetet_cad ${scope} TKXDESTEP TKXDEIGES TKXCAF TKLCAF TKCAF TKVCAF TKCDF TKSTEP TKSTEPBase
-      TKSTEPAttr TKSTEP209 TKIGES TKXSBase TKShHealing TKBool TKBO TKPrim TKFillet TKOffset TKTopAlgo TKMesh TKBRep TKGeomAlgo TKGeomBase TKG3d TKG2d TKMath TKernel)
+    target_link_libraries(curvetet_cad ${scope} ${CURVETET_OPENCASCADE})
   endif()
+  set(CURVETET_ROOMS ${CURVETET_ROOMS} ${name} PARENT_SCOPE)
 endfunction()

@@ -14,7 +14,7 @@ namespace {
 
 constexpr std::size_t kMostLines = 8;
 
-std::string line(const std::string& what, const std::string& text) { return fmt::format("  {:<16}{}\n", what, text); }
+std::string line(const std::string& what, const std::string& text) { return fmt::format("  {:<15} {}\n", what, text); }
 
 std::string place(const Point& p) { return fmt::format("({:.6g}, {:.6g}, {:.6g})", p[0], p[1], p[2]); }
 
@@ -85,7 +85,8 @@ std::string summary(const Report& report) {
                                          place(report.worst_place), report.tets_below_five_degrees));
   text += reduction_lines(report);
   text += line("rounds", report.rounds == 0 ? "0: no restart with smaller sizes was needed"
-                                            : fmt::format("{} restarts with smaller sizes", report.rounds));
+                                            : fmt::format("{} restart{} with smaller sizes", report.rounds,
+                                                          report.rounds == 1 ? "" : "s"));
   text += time_line(report);
   for (std::size_t i = 0; i < std::min(report.warnings.size(), kMostLines); ++i)
     text += line("warning", report.warnings[i]);
