@@ -46,25 +46,28 @@ struct System {
   Vec4 gradient{};
 };
 
+/// Gradient and second derivatives of the distance of the two points, in the four parameters.
 System system_of(const SurfaceSecond& a, const SurfaceSecond& b) {
-  const Vec3 r = a.value - b.value;
+  const double length = distance(a.value, b.value);
+  const Vec3 n = (1 / length) * (a.value - b.value);
   const std::array<Vec3, 4> d{a.du, a.dv, -b.du, -b.dv};
   System s;
   for (std::size_t i = 0; i < 4; ++i) {
-    s.gradient[i] = dot(d[i], r);
-    for (std::size_t j = 0; j < 4; ++j) s.gauss[i][j] = dot(d[i], d[j]);
+    s.gradient[i] = dot(d[i], n);
+    for (std::size_t j = 0; j < 4; ++j) s.gauss[i][j] = dot(d[i], d[j]) / length;
   }
-  s.newton = s.gauss;
+  for (std::size_t i = 0; i < 4; ++i)
+    for (std::size_t j = 0; j < 4; ++j) s.newton[i][j] = s.gauss[i][j] - s.gradient[i] * s.gradient[j] / length;
   const auto add = [&s](std::size_t i, std::size_t j, double x) {
     s.newton[i][j] += x;
     if (i != j) s.newton[j][i] += x;
   };
-  add(0, 0, dot(a.duu, r));
-  add(0, 1, dot(a.duv, r));
-  add(1, 1, dot(a.dvv, r));
-  add(2, 2, -dot(b.duu, r));
-  add(2, 3, -dot(b.duv, r));
-  add(3, 3, -dot(b.dvv, r));
+  add(0, 0, dot(a.duu, n));
+  add(0, 1, dot(a.duv, n));
+  add(1, 1, dot(a.dvv, n));
+  add(2, 2, -dot(b.duu, n));
+  add(2, 3, -dot(b.duv, n));
+  add(3, 3, -dot(b.dvv, n));
   return s;
 }
 
@@ -82,27 +85,26 @@ ParameterPair approach(const Surface& one, const Surface& two, ParameterPair sta
   ParameterPair best = start;
   SurfaceSecond a = one.second(best.one), b = two.second(best.two);
   double least = distance(a.value, b.value);
-  double damping = 1e-6;
-  for (int i = 0; i < kSteps; ++i) {
+  double damping = 1e-9;
+  for (int i = 0; i < kSteps && least > 0; ++i) {
     const auto step = step_of(system_of(a, b), damping);
-    if (!step) {
-      damping *= 100;
-      continue;
-    }
-    const ParameterPair next{best.one - Vec2{(*step)[0], (*step)[1]}, best.two - Vec2{(*step)[2], (*step)[3]}};
-    const SurfaceSecond next_a = one.second(next.one), next_b = two.second(next.two);
+    damping = std::max(10 * damping, 1e-6);
+    if (!step) continue;
+    const Vec2 next = best.one - Vec2{(*step)[0], (*step)[1]};
+    const SurfaceSecond next_a = one.second(next);
+    if (!finite(next_a.value)) continue;
+    const auto foot = two.project(next_a.value, best.two - Vec2{(*step)[2], (*step)[3]});
+    if (!foot) continue;
+    const SurfaceSecond next_b = two.second(*foot);
     const double distance_next = distance(next_a.value, next_b.value);
-    if (distance_next < least) {
-      const bool done = least - distance_next < 1e-4 * least;
-      best = next;
-      a = next_a;
-      b = next_b;
-      least = distance_next;
-      if (done) break;
-      damping = std::max(1e-9, damping / 10);
-    } else {
-      damping *= 10;
-    }
+    if (!(distance_next < least)) continue;
+    const bool done = least - distance_next < 1e-3 * least;
+    best = {next, *foot};
+    a = next_a;
+    b = next_b;
+    least = distance_next;
+    if (done) break;
+    damping = 1e-9;
   }
   return best;
 }

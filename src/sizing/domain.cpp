@@ -86,10 +86,9 @@ void TrimmedDomain::add_use(const EdgeUse& use, const ModelEdge& edge) {
 }
 
 std::size_t TrimmedDomain::row_of(double v) const {
-  const double extent = high_.y - low_.y;
-  if (!(extent > 0)) return 0;
-  const double row = (v - low_.y) / extent * static_cast<double>(rows_.size());
-  return static_cast<std::size_t>(std::clamp(row, 0.0, static_cast<double>(rows_.size() - 1)));
+  const double row = (v - low_.y) / (high_.y - low_.y) * static_cast<double>(rows_.size());
+  if (!(row > 0)) return 0;  // also where it is not a number
+  return row < static_cast<double>(rows_.size()) ? static_cast<std::size_t>(row) : rows_.size() - 1;
 }
 
 void TrimmedDomain::sort_into_rows() {

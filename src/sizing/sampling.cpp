@@ -18,9 +18,11 @@ namespace curvetet::sizing {
 
 namespace {
 
-constexpr double kLargestTurning = 0.5;  ///< radians from the middle of a patch
-constexpr double kAskedSpacing = 2;      ///< of a size asked for the face or edge
-constexpr std::size_t kMostPatches = 20000;
+constexpr double kLargestTurning = 0.5;                ///< radians from the middle of a patch
+constexpr double kAskedSpacing = 2;                    ///< of a size asked for the face or edge
+constexpr std::size_t kMostPatches = 20000;            ///< of a face
+constexpr std::size_t kMostPatchesOfBody = 2'000'000;  ///< shared evenly
+constexpr std::size_t kLeastBudget = 1000;             ///< of a face, however many there are
 constexpr std::size_t kMostEdgeSamples = 4096;
 
 int first_cells(SurfaceKind kind) {
@@ -56,7 +58,9 @@ bool box_within(Vec3 p, const Box3& box, double reach) {
 class FaceSampler {
  public:
   FaceSampler(const Model& model, FaceId face, const TrimmedDomain& domain, const SizingOptions& options, double asked)
-      : face_(face), domain_(domain), options_(options), asked_(asked), bending_(model, face, options) {}
+      : face_(face), domain_(domain), options_(options), asked_(asked), bending_(model, face, options) {
+    budget_ = std::clamp(kMostPatchesOfBody / std::max<std::size_t>(1, model.faces.size()), kLeastBudget, kMostPatches);
+  }
 
   FaceSamples run() {
     queue_first_cells();
@@ -67,7 +71,7 @@ class FaceSampler {
       const Patch patch = measure_patch(face_, bending_, low, high, &middle);
       if (!finite(patch.point)) continue;
       const Demand demand = bending_.demand(patch.middle(), middle);
-      if (wants_split(patch, demand) && result_.patches.size() + cells_.size() - next < kMostPatches) {
+      if (wants_split(patch, demand) && result_.patches.size() + cells_.size() - next < budget_) {
         const auto [one, two] = halves(patch);
         cells_.push_back(one);
         cells_.push_back(two);
@@ -107,6 +111,7 @@ class FaceSampler {
   const SizingOptions& options_;
   double asked_;
   FaceBending bending_;
+  std::size_t budget_ = 0;
   std::vector<std::pair<Vec2, Vec2>> cells_;
   FaceSamples result_;
 };
