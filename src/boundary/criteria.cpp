@@ -19,6 +19,8 @@ namespace {
 /// Sum of cotangents below which an edge is not Delaunay; away from zero, so that cocircular corners never flip back
 /// and forth.
 constexpr double kFlipMargin = 1e-6;
+/// Height over length below which a triangle is flat.
+constexpr double kFlat = 1e-6;
 /// Largest number of Newton steps; from a good start two are enough, a bad start never converges.
 constexpr int kNewtonSteps = 8;
 /// Distances to the three corners agree to this share of the radius.
@@ -30,6 +32,8 @@ constexpr double kWrap = std::numbers::pi / 2;
 constexpr double kBend = 0.175;
 /// Component of a pole's edge around the pole over its length: an angle of about 55 degrees around the pole.
 constexpr double kSlant = 1;
+/// Cosine of the angle to the surface's normal below which a triangle stands upright: 60 degrees.
+constexpr double kUpright = 0.5;
 /// Working length below which an arc is a point.
 constexpr double kNoLength = 1e-9;
 
@@ -41,9 +45,23 @@ double cotangent(Vec3 apex, Vec3 a, Vec3 b) {
   return cosine < 0 ? -std::numeric_limits<double>::infinity() : std::numeric_limits<double>::infinity();
 }
 
-int count_degenerate(const Corner& a, const Corner& b, const Corner& c, const Corner& d, const Corner& e,
-                     const Corner& f) {
-  return (degenerate(a, b, c) ? 1 : 0) + (degenerate(d, e, f) ? 1 : 0);
+/// So flat, in space or in the chart, that its angles are rounding errors: the middle of a chart edge, rounded to the
+/// grid, is not on the edge.
+bool flat(const Corner& a, const Corner& b, const Corner& c) {
+  if (degenerate(a, b, c)) return false;
+  const Vec3 u = b.position - a.position, v = c.position - a.position;
+  const double longest = std::max({norm2(u), norm2(v), norm2(v - u)});
+  if (norm2(cross(u, v)) <= kFlat * kFlat * longest * longest) return true;
+  const Vec2 r = b.q - a.q, s = c.q - a.q;
+  return std::abs(cross(r, s)) <= kFlat * std::max({norm2(r), norm2(s), norm2(s - r)});
+}
+
+using Property = bool (*)(const Corner&, const Corner&, const Corner&);
+
+/// How many of two triangles have a property.
+int count(Property property, const Corner& a, const Corner& b, const Corner& c, const Corner& d, const Corner& e,
+          const Corner& f) {
+  return (property(a, b, c) ? 1 : 0) + (property(d, e, f) ? 1 : 0);
 }
 
 bool inside_chart(Vec2 q) { return std::abs(q.x) <= 1 && std::abs(q.y) <= 1; }
@@ -125,17 +143,19 @@ bool bent(const Corner& a, const Corner& b) {
 }
 
 bool flip_improves(const Corner& a, const Corner& b, const Corner& c, const Corner& d) {
+  if (c.vertex == d.vertex) return false;
+  const int flat_now = count(flat, a, b, c, b, a, d), flat_then = count(flat, a, d, c, d, b, c);
+  if (flat_then != flat_now) return flat_then < flat_now;
   const bool bent_then = bent(c, d), bent_now = bent(a, b);
   if (bent_then && bent_now) return arc_estimate(c, d) < (1 - kFlipMargin) * arc_estimate(a, b);
   if (bent_then != bent_now) return bent_now;
-  if (c.vertex == d.vertex) return false;
-  const int degenerate_now = count_degenerate(a, b, c, b, a, d);
-  const int degenerate_then = count_degenerate(a, d, c, d, b, c);
+  const int degenerate_now = count(degenerate, a, b, c, b, a, d), degenerate_then = count(degenerate, a, d, c, d, b, c);
   if (degenerate_then != degenerate_now) return degenerate_then < degenerate_now;
   if (degenerate_now > 0) return apex_improves(a, b, c, d);
   const double aligned_then = std::min(alignment(a, d, c), alignment(d, b, c));
-  if (aligned_then <= 0) return false;
-  if (std::min(alignment(a, b, c), alignment(b, a, d)) <= 0) return true;
+  const double aligned_now = std::min(alignment(a, b, c), alignment(b, a, d));
+  // A fin stands upright on the surface: thin in the chart, where a point was put on a long edge, but not in space.
+  if (std::min(aligned_now, aligned_then) < kUpright) return aligned_then > aligned_now + kFlipMargin;
   return cotangent(c.position, a.position, b.position) + cotangent(d.position, a.position, b.position) < -kFlipMargin;
 }
 

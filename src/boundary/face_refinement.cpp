@@ -234,7 +234,8 @@ class FaceRefiner {
           continue;
         }
         const TriangleId n = t.neighbour[i];
-        if (!n.valid() || cavity_.size() >= kLargestCavity || !in_sphere(n, p)) continue;
+        // Across an edge of the holder a node may be as near as the point is to the edge, in whatever triangle.
+        if (!n.valid() || cavity_.size() >= kLargestCavity || (k > 1 && !in_sphere(n, p))) continue;
         if (std::find(cavity_.begin(), cavity_.end(), n) == cavity_.end()) cavity_.push_back(n);
       }
     }
