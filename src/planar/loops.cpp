@@ -43,6 +43,7 @@ class Assembler {
     }
     std::sort(graph_.isolated.begin(), graph_.isolated.end());
     graph_.isolated.erase(std::unique(graph_.isolated.begin(), graph_.isolated.end()), graph_.isolated.end());
+    drop_unused_nodes();
     return std::move(graph_);
   }
 
@@ -83,12 +84,37 @@ class Assembler {
         const NodeId b = node(chain.vertices[i + 1], chain.q[i + 1]);
         if (a != b && graph_.nodes[a].q == graph_.nodes[b].q) {
           fault(chain.use, i, "segment of no length");
-        } else if (a != b) {
+        } else if (a != b && !ends_spur(a, b, l)) {
           graph_.segments.push_back({a, b, chain.use, i, l, chain.two_sided || loop.open});
         }
         a = b;
       }
     }
+  }
+
+  /// Takes back the last segment if this one returns along it and both lie at one vertex: a degenerate edge whose ends
+  /// are one chart point bounds nothing.
+  bool ends_spur(NodeId a, NodeId b, std::size_t l) {
+    if (graph_.segments.empty() || graph_.nodes[a].vertex != graph_.nodes[b].vertex) return false;
+    const LoopSegment& last = graph_.segments.back();
+    if (last.loop != l || last.a != b || last.b != a || last.two_sided) return false;
+    graph_.segments.pop_back();
+    return true;
+  }
+
+  /// Nodes whose segments were all left out are no nodes.
+  void drop_unused_nodes() {
+    IndexedVector<NodeId, NodeId> number(graph_.nodes.size());
+    std::vector<bool> used(graph_.nodes.size(), false);
+    for (const LoopSegment& s : graph_.segments) used[s.a.value()] = used[s.b.value()] = true;
+    for (const NodeId n : graph_.isolated) used[n.value()] = true;
+    IndexedVector<NodeId, FaceNode> kept;
+    for (std::uint32_t n = 0; n < used.size(); ++n) {
+      if (used[n]) number[NodeId(n)] = kept.push_back(graph_.nodes[NodeId(n)]);
+    }
+    for (LoopSegment& s : graph_.segments) s = {number[s.a], number[s.b], s.use, s.index, s.loop, s.two_sided};
+    for (NodeId& n : graph_.isolated) n = number[n];
+    graph_.nodes = std::move(kept);
   }
 
   NodeId node(VertexId vertex, Vec2 q) {

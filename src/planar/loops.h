@@ -21,7 +21,7 @@ struct LoopSegment {
 
 struct LoopGraph {
   IndexedVector<NodeId, FaceNode> nodes;  ///< one per vertex and chart point, by first appearance
-  std::vector<LoopSegment> segments;      ///< loop by loop; segments of no length between equal vertices are left out
+  std::vector<LoopSegment> segments;  ///< loop by loop, without those of no length or that come and go at one vertex
   std::vector<NodeId> isolated;
   std::vector<LoopFault> faults;  ///< malformed chains, points beyond the chart, open loops, collapsed segments
 };

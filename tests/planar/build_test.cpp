@@ -187,6 +187,20 @@ TEST(Build, PolesAndCollapsedSegments) {
   EXPECT_TRUE(names(other.build({{{{pole, rest}, false}}, {}}), "segment of no length"));
 }
 
+TEST(Build, SpursAtOneVertexAreLeftOut) {
+  // Degenerate edges that begin and end at one chart point, on both sides of the rim.
+  for (const double x : {-0.25, 0.25}) {
+    ChainInput rim{0, {}, {}, false}, spur{1, {}, {}, false};
+    rim.vertices = {VertexId(0U), VertexId(1U), VertexId(2U), VertexId(0U)};
+    rim.q = {{0, 0}, {0.5, -0.25}, {0.5, 0.25}, {0, 0}};
+    spur.vertices.assign(5, VertexId(0U));
+    spur.q = {{0, 0}, {0.5 * x, 0}, {x, 0}, {0.5 * x, 0}, {0, 0}};
+    const FaceMesh mesh = built({{{{rim, spur}, false}}, {}});
+    EXPECT_EQ(mesh.triangle_count(), 1U);
+    EXPECT_EQ(mesh.node_count(), 3U);
+  }
+}
+
 TEST(Build, MalformedInputIsAFault) {
   FaceMesh mesh;
   EXPECT_FALSE(mesh.build({}).empty());
