@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <numbers>
 
 #include "quality/box_tree.h"
@@ -17,10 +18,12 @@
 namespace curvetet::checks {
 namespace {
 
-constexpr int kGuessSamples = 17;   ///< samples per direction for guesses
+constexpr int kGuessSamples = 17;   ///< per direction, for guesses
+constexpr int kManySamples = 160;   ///< per direction, where those lead nowhere: threads and other wound surfaces
 constexpr int kCoverSamples = 8;    ///< per direction, for coverage
 constexpr int kSamplesPerUse = 24;  ///< of a loop's parameter curves
 constexpr std::size_t kGridGuesses = 4;
+constexpr double kAnyDistance = std::numeric_limits<double>::infinity();
 
 /// What one face's task finds.
 struct FaceOutcome {
@@ -114,7 +117,7 @@ class FaceTask {
       if (const auto foot = foot_of(node, std::span(guesses).first(found), outcome)) guesses[found++] = foot->uv;
     }
     const Vec3 a = m_.points[nodes[0]], b = m_.points[nodes[1]], c = m_.points[nodes[2]];
-    const auto foot = projector_.project((1.0 / 3) * (a + b + c), std::span(guesses).first(found));
+    const auto foot = projector_.project((1.0 / 3) * (a + b + c), std::span(guesses).first(found), kAnyDistance);
     if (!foot) {
       outcome.lost.push_back(t);
       return;
@@ -136,8 +139,8 @@ class FaceTask {
       guesses.push_back({owner->parameter[0], owner->parameter[1]});
     }
     guesses.insert(guesses.end(), others.begin(), others.end());
-    feet_[i] = projector_.project(m_.points[node], guesses);
     const double limit = m_.limit(face_.tolerance, node);
+    feet_[i] = projector_.project(m_.points[node], guesses, limit);
     const double distance = feet_[i] ? feet_[i]->distance : std::numeric_limits<double>::infinity();
     if (!(distance <= limit)) outcome.off.push_back({node, distance, limit});
     return feet_[i];
@@ -228,29 +231,35 @@ void FaceProjector::consider(Vec3 point, Vec2 guess, std::optional<Foot>& best) 
   if (better) best = foot;
 }
 
-void FaceProjector::sample() {
-  for (int i = 0; i < kGuessSamples * kGuessSamples; ++i) {
-    const int row = i / kGuessSamples, column = i % kGuessSamples;
-    const double s = static_cast<double>(column) / (kGuessSamples - 1),
-                 t = static_cast<double>(row) / (kGuessSamples - 1);
-    const Vec2 uv{face_.low.x + s * (face_.high.x - face_.low.x), face_.low.y + t * (face_.high.y - face_.low.y)};
-    sample_uv_.push_back(uv);
-    sample_value_.push_back(surface_->value(uv));
+void FaceProjector::Grid::fill(const ModelFace& face, const Surface& surface, int samples) {
+  for (int i = 0; i < samples * samples; ++i) {
+    const int row = i / samples, column = i % samples;
+    const double s = static_cast<double>(column) / (samples - 1), t = static_cast<double>(row) / (samples - 1);
+    uv.push_back({face.low.x + s * (face.high.x - face.low.x), face.low.y + t * (face.high.y - face.low.y)});
+    value.push_back(surface.value(uv.back()));
   }
 }
 
-std::optional<Foot> FaceProjector::project(Vec3 point, std::span<const Vec2> guesses) {
+std::vector<Vec2> FaceProjector::Grid::nearest(Vec3 point) const {
+  std::vector<std::pair<double, std::size_t>> order(uv.size());
+  for (std::size_t i = 0; i < order.size(); ++i) order[i] = {norm2(value[i] - point), i};
+  const auto middle = order.begin() + kGridGuesses;
+  std::partial_sort(order.begin(), middle, order.end());
+  std::vector<Vec2> result;
+  for (auto entry = order.begin(); entry != middle; ++entry) result.push_back(uv[entry->second]);
+  return result;
+}
+
+std::optional<Foot> FaceProjector::project(Vec3 point, std::span<const Vec2> guesses, double near_enough) {
   std::optional<Foot> best;
+  const auto good = [&] { return best && best->inside_box && best->distance <= near_enough; };
   for (const Vec2 guess : guesses) consider(point, guess, best);
-  if (best && best->inside_box) return best;
-  if (sample_uv_.empty()) sample();
-  std::vector<std::size_t> order(sample_uv_.size());
-  for (std::size_t i = 0; i < order.size(); ++i) order[i] = i;
-  std::partial_sort(order.begin(), order.begin() + kGridGuesses, order.end(), [&](std::size_t i, std::size_t j) {
-    const double di = norm2(sample_value_[i] - point), dj = norm2(sample_value_[j] - point);
-    return di != dj ? di < dj : i < j;
-  });
-  for (std::size_t k = 0; k < kGridGuesses; ++k) consider(point, sample_uv_[order[k]], best);
+  if (good()) return best;
+  if (coarse_.uv.empty()) coarse_.fill(face_, *surface_, kGuessSamples);
+  for (const Vec2 guess : coarse_.nearest(point)) consider(point, guess, best);
+  if (good() || !std::isfinite(near_enough)) return best;
+  if (fine_.uv.empty()) fine_.fill(face_, *surface_, kManySamples);
+  for (const Vec2 guess : fine_.nearest(point)) consider(point, guess, best);
   return best;
 }
 

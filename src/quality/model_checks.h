@@ -40,21 +40,25 @@ struct Foot {
 class FaceProjector {
  public:
   explicit FaceProjector(const ModelFace& face);
-  /// Closest of the feet found from the guesses, those inside the domain's box first; from a grid of samples if no
-  /// guess leads there.
-  std::optional<Foot> project(Vec3 point, std::span<const Vec2> guesses);
+  /// Closest of the feet found from the guesses, those inside the domain's box first. From a grid of samples if none of
+  /// them is inside and within `near_enough`, and from a fine grid if that is finite and still not reached.
+  std::optional<Foot> project(Vec3 point, std::span<const Vec2> guesses, double near_enough);
   Vec3 outward_normal(Vec2 uv) const;
   Vec3 value(Vec2 uv) const { return surface_->value(uv); }
 
  private:
-  void sample();
+  struct Grid {
+    std::vector<Vec2> uv;
+    std::vector<Vec3> value;
+    void fill(const ModelFace& face, const Surface& surface, int samples);
+    std::vector<Vec2> nearest(Vec3 point) const;
+  };
   bool inside_box(Vec2 uv) const;
   void consider(Vec3 point, Vec2 guess, std::optional<Foot>& best) const;
 
   const ModelFace& face_;
   std::unique_ptr<Surface> surface_;
-  std::vector<Vec2> sample_uv_;
-  std::vector<Vec3> sample_value_;
+  Grid coarse_, fine_;
 };
 
 /// Triangles of every face against its surface. Adds to each solid the volume that may lie between facets and surfaces.
