@@ -130,11 +130,14 @@ Vec2 TrimmedDomain::lifted(Vec2 uv) const {
   return {uv.x + period_shift(uv.x, low_.x, high_.x, period_u_), uv.y + period_shift(uv.y, low_.y, high_.y, period_v_)};
 }
 
-double TrimmedDomain::distance_to_boundary(Vec2 uv, Vec2 scale) const {
-  double least = std::numeric_limits<double>::infinity();
+bool TrimmedDomain::is_near_boundary(Vec2 uv, Vec2 scale, double reach) const {
   const auto scaled = [scale](Vec2 p) { return Vec2{scale.x * p.x, scale.y * p.y}; };
-  for (const auto& [a, b] : segments_) least = std::min(least, point_to_segment(scaled(uv), scaled(a), scaled(b)));
-  return least;
+  const double reach_v = scale.y > 0 ? reach / scale.y : high_.y - low_.y;
+  const std::size_t last = row_of(uv.y + reach_v);
+  for (std::size_t row = row_of(uv.y - reach_v); row <= last; ++row)
+    for (const std::uint32_t i : rows_[row])
+      if (point_to_segment(scaled(uv), scaled(segments_[i].a), scaled(segments_[i].b)) <= reach) return true;
+  return false;
 }
 
 }  // namespace curvetet::sizing

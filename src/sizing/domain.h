@@ -22,8 +22,8 @@ class TrimmedDomain {
   bool meets(Vec2 cell_low, Vec2 cell_high) const;
   /// The parameter moved by whole periods to where the domain is.
   Vec2 lifted(Vec2 uv) const;
-  /// Distance to the boundary with u and v scaled to lengths.
-  double distance_to_boundary(Vec2 uv, Vec2 scale) const;
+  /// Is the boundary within `reach` of the parameter, with u and v scaled to lengths?
+  bool is_near_boundary(Vec2 uv, Vec2 scale, double reach) const;
 
  private:
   struct Segment {

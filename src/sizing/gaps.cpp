@@ -241,9 +241,11 @@ class GapSearch {
       std::uint32_t patch;
     };
     std::vector<Candidate> order;
-    order.reserve(candidates.size());
+    const double reach = 2 * reach_of(probe.curvature, probe.size);
+    const Box3 here{probe.point, probe.point};
     for (const std::uint32_t i : candidates)
-      order.push_back({scene_.patches[i]->face, distance(scene_.patches[i]->point, probe.point), i});
+      if (boxes_within(scene_.patches[i]->box, here, reach))
+        order.push_back({scene_.patches[i]->face, distance(scene_.patches[i]->point, probe.point), i});
     std::sort(order.begin(), order.end(), [](const Candidate& a, const Candidate& b) {
       return std::tie(a.face, a.distance, a.patch) < std::tie(b.face, b.distance, b.patch);
     });
@@ -292,7 +294,7 @@ class GapSearch {
     foot.point = s.value;
     foot.gap = distance(point, foot.point);
     if (!std::isfinite(foot.gap)) return std::nullopt;
-    if (!domain.inside(foot.uv) && !(domain.distance_to_boundary(foot.uv, {norm(s.du), norm(s.dv)}) <= 0.5 * foot.gap))
+    if (!domain.inside(foot.uv) && !domain.is_near_boundary(foot.uv, {norm(s.du), norm(s.dv)}, 0.5 * foot.gap))
       return std::nullopt;
     return foot;
   }

@@ -40,6 +40,11 @@ TEST(TrimmedDomain, RingHasAHole) {
     const double radius = std::hypot(p.x, p.y);
     if (std::abs(radius - 10) < 0.05 || std::abs(radius - 4) < 0.05) continue;
     EXPECT_EQ(domain.inside(uv), radius > 4 && radius < 10) << radius;
+    const double away = std::min(std::abs(radius - 10), std::abs(radius - 4));
+    const SurfaceFirst s = surface.first(uv);
+    EXPECT_FALSE(domain.is_near_boundary(uv, {norm(s.du), norm(s.dv)}, 0.8 * away));
+    EXPECT_TRUE(
+        domain.is_near_boundary(uv, {norm(s.du), norm(s.dv)}, 1.2 * away + model.frame.length_to_working(0.05)));
     if (domain.inside(uv)) {
       EXPECT_TRUE(domain.meets(uv - Vec2{1e-3, 1e-3}, uv + Vec2{1e-3, 1e-3}));
     }
