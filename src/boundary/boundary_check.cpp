@@ -95,7 +95,22 @@ void check_solid(const Model& model, const BoundaryMesh& mesh, const VertexStore
   if (unbalanced == 0 && !(volume > 0)) faults.push_back(at + "volume is not positive");
 }
 
-void check_places(const BoundaryMesh& mesh, const VertexStore& vertices, std::vector<std::string>& faults) {
+std::string owner_name(const Model& model, Owner owner) {
+  switch (owner.kind) {
+    case OwnerKind::vertex:
+      return "vertex " + std::to_string(model.vertices[CadVertexId(owner.index)].label.cad_id);
+    case OwnerKind::edge:
+      return "edge " + std::to_string(model.edges[EdgeId(owner.index)].label.cad_id);
+    case OwnerKind::face:
+      return "face " + std::to_string(model.faces[FaceId(owner.index)].label.cad_id);
+    case OwnerKind::interior:
+      break;
+  }
+  return "the inside";
+}
+
+void check_places(const Model& model, const BoundaryMesh& mesh, const VertexStore& vertices,
+                  std::vector<std::string>& faults) {
   std::vector<VertexId> used;
   for (const FaceMesh& face : mesh.faces) {
     for (std::size_t n = 0; n < face.node_count(); ++n) {
@@ -114,7 +129,8 @@ void check_places(const BoundaryMesh& mesh, const VertexStore& vertices, std::ve
     const auto& [x0, y0, z0, a] = places[i - 1];
     const auto& [x1, y1, z1, b] = places[i];
     if (x0 == x1 && y0 == y1 && z0 == z1) {
-      faults.push_back("vertices " + number(a.value()) + " and " + number(b.value()) + " are at one place");
+      faults.push_back("vertices " + number(a.value()) + " of " + owner_name(model, vertices.owner(a)) + " and " +
+                       number(b.value()) + " of " + owner_name(model, vertices.owner(b)) + " are at one place");
     }
   }
 }
@@ -127,7 +143,7 @@ std::vector<std::string> check_boundary(const Model& model, const BoundaryMesh& 
   for (std::size_t f = 0; f < model.faces.size(); ++f) check_face(model, mesh, FaceId(f), faults);
   for (const Offence& offence : find_offences(model, mesh)) faults.push_back(describe(offence, model));
   for (std::size_t s = 0; s < model.solids.size(); ++s) check_solid(model, mesh, vertices, SolidId(s), faults);
-  check_places(mesh, vertices, faults);
+  check_places(model, mesh, vertices, faults);
   return faults;
 }
 

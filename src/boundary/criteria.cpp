@@ -28,7 +28,7 @@ constexpr double kBallTolerance = 0.01;
 
 /// Arc over chord from which an edge wraps around: that of half a circle.
 constexpr double kWrap = std::numbers::pi / 2;
-/// Distance of an arc's middle from the chord's over the chord: on a circle the angle over eight, here of 80 degrees.
+/// Distance of an arc's middle from the chord over the chord: on a circle the angle over eight, here of 80 degrees.
 constexpr double kBend = 0.175;
 /// Component of a pole's edge around the pole over its length: an angle of about 55 degrees around the pole.
 constexpr double kSlant = 1;
@@ -136,10 +136,18 @@ bool bent(const Corner& a, const Corner& b) {
     // There the derivative says nothing; an edge that leaves the other end askew circles around the pole.
     if (at_pole(a) && at_pole(b)) return false;
     const Corner& away = at_pole(a) ? b : a;
-    return norm(d.x * away.dx + d.y * away.dy - (b.position - a.position)) > kSlant * chord;
+    return norm(d.x * away.dx + d.y * away.dy - (b.position - a.position)) > kSlant * chord + kNoLength;
   }
-  // Hermite's cubic has its middle at this distance from the chord's.
-  return norm(d.x * (a.dx - b.dx) + d.y * (a.dy - b.dy)) / 8 > kBend * chord + kNoLength;
+  // Where the middle of Hermite's cubic is, seen from the chord's.
+  const Vec3 offset = 0.125 * (d.x * (a.dx - b.dx) + d.y * (a.dy - b.dy));
+  return off_chord(offset, b.position - a.position);
+}
+
+bool off_chord(Vec3 offset, Vec3 chord) {
+  const double length = norm(chord);
+  if (norm(cross(offset, chord)) > kBend * length * length + kNoLength * length) return true;
+  // Along the chord only speed is told, unless the middle lies beyond an end.
+  return std::abs(dot(offset, chord)) > 0.5 * length * length + kNoLength * length;
 }
 
 bool flip_improves(const Corner& a, const Corner& b, const Corner& c, const Corner& d) {

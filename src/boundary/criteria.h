@@ -37,6 +37,9 @@ bool at_pole(const Corner& a);
 /// or its middle is far from the chord's. What lies left of the one may then lie right of the other.
 bool bent(const Corner& a, const Corner& b);
 
+/// Whether a curve whose middle is at `offset` from the middle of its chord is far from being its picture.
+bool off_chord(Vec3 offset, Vec3 chord);
+
 /// Whether triangles (a,b,c) and (b,a,d) should become (a,d,c) and (d,b,c). In order: fewer flat
 /// triangles, no bent edge, fewer degenerate ones, fewer that oppose the surface's normal, then Delaunay in space
 /// (angles at c and d exceed two right ones, with a margin).

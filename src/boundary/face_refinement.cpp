@@ -17,10 +17,11 @@ namespace curvetet {
 
 namespace {
 
-constexpr double kRadius = 0.72;           ///< largest circumradius over size
-constexpr double kSpacing = 0.5;           ///< least distance of a new point to others over size
-constexpr double kSpacingFloor = 0.02;     ///< the same for points that cure a fold
-constexpr double kAligned = 0.7071;        ///< cosine of the largest angle of a triangle to the surface at its corners
+constexpr double kRadius = 0.72;        ///< largest circumradius over size
+constexpr double kSpacing = 0.5;        ///< least distance of a new point to others over size
+constexpr double kSpacingFloor = 0.02;  ///< the same for points that cure a fold
+constexpr double kBentFloor = 0.05;     ///< least distance of points that cure bent edges, over size and usual segment
+constexpr double kAligned = 0.7071;     ///< cosine of the largest angle of a triangle to the surface at its corners
 constexpr double kSineSmallAngle = 0.342;  ///< of 20 degrees
 constexpr double kLongEdge = 1.4;          ///< an edge over size that is split when no centre can be inserted
 constexpr double kEncroachHeight = 0.45;   ///< distance over size within which a diametral sphere counts
@@ -54,6 +55,7 @@ class FaceRefiner {
       corners_.push_back(make_corner(node, position, surface.first(mesh.chart.to_uv(node.q)), mesh.chart));
       size_at_.push_back(sizes.at_face(face, position));
     }
+    measure_segments();
     wanted_ = [this](NodeId a, NodeId b, NodeId c, NodeId d) {
       return flip_improves(corner(a), corner(b), corner(c), corner(d));
     };
@@ -74,6 +76,23 @@ class FaceRefiner {
   }
 
  private:
+  /// The median length of the segments on the face's boundary: on a thin wire far below the size.
+  void measure_segments() {
+    std::vector<double> lengths;
+    for (std::size_t k = 0; k < mesh_.triangle_slots(); ++k) {
+      const FaceTriangle& t = mesh_.triangle(TriangleId(k));
+      for (std::size_t i = 0; t.alive() && i < 3; ++i) {
+        if (t.use[i] == -1) continue;
+        const Corner &a = corner(t.node[(i + 1) % 3]), &b = corner(t.node[(i + 2) % 3]);
+        if (a.vertex != b.vertex) lengths.push_back(distance(a.position, b.position));
+      }
+    }
+    if (lengths.empty()) return;
+    const auto middle = lengths.begin() + static_cast<std::ptrdiff_t>(lengths.size() / 2);
+    std::nth_element(lengths.begin(), middle, lengths.end());
+    usual_segment_ = *middle;
+  }
+
   const Corner& corner(NodeId n) const { return corners_[n.value()]; }
 
   std::vector<TriangleId> alive() const {
@@ -98,7 +117,7 @@ class FaceRefiner {
     for (const TriangleId t : triangles) {
       ++stamps_[t.value()];
       if (!mesh_.triangle(t).alive()) continue;
-      const Verdict verdict = judge(t);
+      const Verdict verdict = judge(t, true);
       if (verdict.need != Need::none) queue_.push({verdict.worth, t.value(), stamps_[t.value()]});
     }
   }
@@ -108,11 +127,11 @@ class FaceRefiner {
   }
 
   /// Bent edges before sizes before folds before shapes; the larger the earlier among equals.
-  Verdict judge(TriangleId id) const {
+  Verdict judge(TriangleId id, bool bends) const {
     const FaceTriangle& t = mesh_.triangle(id);
     const Corner &a = corner(t.node[0]), &b = corner(t.node[1]), &c = corner(t.node[2]);
     const double size = size_of(t);
-    if (must_split(a, b) || must_split(b, c) || must_split(c, a)) {
+    if (bends && (must_split(a, b) || must_split(b, c) || must_split(c, a))) {
       return {Need::bend, 1e6 + std::max({arc_estimate(a, b), arc_estimate(b, c), arc_estimate(c, a)}) / size};
     }
     if (degenerate(a, b, c)) return {};
@@ -146,7 +165,12 @@ class FaceRefiner {
   }
 
   void refine(TriangleId id) {
-    const Verdict verdict = judge(id);
+    Verdict verdict = judge(id, true);
+    if (verdict.need == Need::bend) {
+      if (split_bent(id)) return;
+      verdict = judge(id, false);
+    }
+    if (verdict.need == Need::none) return;
     const FaceTriangle t = mesh_.triangle(id);
     std::array<Vec2, 3> q;
     std::array<Vec3, 3> p;
@@ -154,8 +178,6 @@ class FaceRefiner {
       q[i] = corner(t.node[i]).q;
       p[i] = corner(t.node[i]).position;
     }
-    // The bent edge says where a point is missing; a centre could be anywhere.
-    if (verdict.need == Need::bend) return split_longest(id, verdict.need);
     auto centre = ball_centre(surface_, mesh_.chart, q, p);
     if (!centre) {
       if (const auto other = metric_centre(surface_, mesh_.chart, q)) centre = evaluate(*other);
@@ -166,6 +188,33 @@ class FaceRefiner {
 
   FacePoint evaluate(Vec2 q) const { return {q, surface_.first(mesh_.chart.to_uv(q))}; }
 
+  /// A point at the middle of the most bent edge: it says where a point is missing, while a centre could be anywhere.
+  /// Only if the surface there is indeed off the chord; the derivatives at the ends may have been at a jump of speed.
+  bool split_bent(TriangleId id) {
+    const FaceTriangle t = mesh_.triangle(id);
+    double longest = 0;
+    std::size_t at = 3;
+    for (std::size_t i = 0; i < 3; ++i) {
+      const Corner &a = corner(t.node[(i + 1) % 3]), &b = corner(t.node[(i + 2) % 3]);
+      if (t.use[i] != -1 || !must_split(a, b) || arc_estimate(a, b) <= longest) continue;
+      longest = arc_estimate(a, b);
+      at = i;
+    }
+    if (at == 3) return false;
+    const Corner &a = corner(t.node[(at + 1) % 3]), &b = corner(t.node[(at + 2) % 3]);
+    const FacePoint middle = evaluate(middle_of(a, b));
+    const Vec3 chord = b.position - a.position;
+    if (!off_chord(middle.at.value - 0.5 * (a.position + b.position), chord)) {
+      if (arc_estimate(a, b) < 2 * norm(chord)) return false;
+    }
+    return insert(middle, id, Need::bend);
+  }
+
+  static Vec2 middle_of(const Corner& a, const Corner& b) {
+    const Vec2 middle = 0.5 * (a.q + b.q);
+    return {snap(middle.x), snap(middle.y)};
+  }
+
   /// A point at the middle of the longest edge that may be split, if it is too long or is what is wrong.
   void split_longest(TriangleId id, Need need) {
     const FaceTriangle t = mesh_.triangle(id);
@@ -173,17 +222,14 @@ class FaceRefiner {
     std::size_t at = 3;
     for (std::size_t i = 0; i < 3; ++i) {
       if (t.use[i] != -1) continue;
-      const Corner &a = corner(t.node[(i + 1) % 3]), &b = corner(t.node[(i + 2) % 3]);
-      const double length = need == Need::bend ? arc_estimate(a, b) : distance(a.position, b.position);
-      if (need == Need::bend && !must_split(a, b)) continue;
+      const double length = distance(corner(t.node[(i + 1) % 3]).position, corner(t.node[(i + 2) % 3]).position);
       if (length > best) {
         best = length;
         at = i;
       }
     }
     if (at == 3 || (need == Need::size && best < kLongEdge * size_of(t))) return;
-    const Vec2 middle = 0.5 * (corner(t.node[(at + 1) % 3]).q + corner(t.node[(at + 2) % 3]).q);
-    insert(evaluate({snap(middle.x), snap(middle.y)}), id, need);
+    insert(evaluate(middle_of(corner(t.node[(at + 1) % 3]), corner(t.node[(at + 2) % 3]))), id, need);
   }
 
   /// Least distance to other nodes: the cure of a fold or a bent edge may be as close as the geometry itself forces it
@@ -191,7 +237,8 @@ class FaceRefiner {
   double spacing(const FaceTriangle& t, Need need, double size) const {
     const Corner &a = corner(t.node[0]), &b = corner(t.node[1]), &c = corner(t.node[2]);
     if (need == Need::bend) {
-      return std::min(kSpacing * size, 0.1 * std::max({arc_estimate(a, b), arc_estimate(b, c), arc_estimate(c, a)}));
+      const double longest = std::max({arc_estimate(a, b), arc_estimate(b, c), arc_estimate(c, a)});
+      return std::min(kSpacing * size, std::max(0.1 * longest, kBentFloor * std::min(size, usual_segment_)));
     }
     if (need == Need::fold) return kSpacing * std::min(size, circumradius(a.position, b.position, c.position));
     return kSpacing * size;
@@ -263,6 +310,7 @@ class FaceRefiner {
   const Surface& surface_;
   const SizeField& sizes_;
   FaceMesh::FlipWanted wanted_;
+  double usual_segment_ = 0;
   std::vector<Corner> corners_;        ///< by node
   std::vector<double> size_at_;        ///< by node
   std::vector<std::uint32_t> stamps_;  ///< by triangle: entries with an older stamp are stale

@@ -30,7 +30,7 @@ const std::vector<NamedBody>& bodies() {
          return make_boxes({1, 2, 1}, 1, 1);
        }},
       {"ball", [] { return make_ball(1); }},
-      {"shell", [] { return make_shell(1, 0.9); }},
+      {"shell", [] { return make_shell(1, 0.3); }},
       {"cylinder", [] { return make_cylinder(1, 3); }},
       {"wire", [] { return make_cylinder(0.02, 3); }},
       {"disc", [] { return make_cylinder(2, 0.05); }},
