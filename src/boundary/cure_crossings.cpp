@@ -17,6 +17,9 @@ constexpr std::size_t kPointsPerPair = 8;
 // More crossings than this are no thin wall but a surface mesh gone wrong.
 constexpr std::size_t kPairsPerTriangle = 4;
 
+// Cosine of the angle to the surface's normal, 84 degrees, from which a facet counts as folded.
+constexpr double kFolded = 0.1;
+
 class CrossingCure {
  public:
   CrossingCure(Conjoint& conjoint, const CrossingOptions& options, Context& context)
@@ -36,11 +39,15 @@ class CrossingCure {
       }
       context_.log(LogLevel::debug, fmt::format("crossings, round {}: {} pairs of {} triangles", result_.rounds,
                                                 pairs.size(), triangles_.size()));
-      if (pairs.empty()) return result_;
+      const std::vector<std::uint32_t> folds = find_folds();
+      if (result_.rounds == 0) result_.first_folds = folds.size();
+      if (pairs.empty() && folds.empty()) return result_;
       const bool hopeless = result_.rounds == options_.rounds || result_.points > budget_ ||
                             pairs.size() >= kPairsPerTriangle * triangles_.size();
-      if (hopeless || !refine(pairs)) {
-        for (const auto& [i, j] : pairs) report(i, j);
+      const bool progress = !hopeless && (refine(pairs) | unfold(folds));
+      if (!progress) {
+        for (const auto& [i, j] : pairs) report(i, j, "facets of the surface mesh cross");
+        for (std::uint32_t i : folds) report(i, i, "a facet of the surface mesh is folded against its face");
         return result_;
       }
     }
@@ -62,6 +69,24 @@ class CrossingCure {
       const double da = deviation_of(a), db = deviation_of(b);
       const bool a_first = da >= db;
       if (refine_one(a_first ? a : b, std::max(da, db)) || refine_one(a_first ? b : a, std::min(da, db))) any = true;
+    }
+    return any;
+  }
+
+  std::vector<std::uint32_t> find_folds() const {
+    std::vector<std::uint32_t> folds;
+    for (std::uint32_t i = 0; i < triangles_.size(); ++i)
+      if (facing(conjoint_, triangles_[i].face, triangles_[i].triangle) < kFolded) folds.push_back(i);
+    return folds;
+  }
+
+  bool unfold(const std::vector<std::uint32_t>& folds) {
+    bool any = false;
+    for (std::uint32_t i : folds) {
+      const SurfaceTriangle& t = triangles_[i];
+      if (!still_there(t) || !refine_triangle(conjoint_, t.face, t.triangle, refinement_).ok()) continue;
+      ++result_.points;
+      any = true;
     }
     return any;
   }
@@ -102,7 +127,7 @@ class CrossingCure {
     return done.ok();
   }
 
-  void report(std::uint32_t i, std::uint32_t j) {
+  void report(std::uint32_t i, std::uint32_t j, const char* what) {
     const SurfaceTriangle &a = triangles_[i], &b = triangles_[j];
     if (!reported_.insert({std::min(a.face, b.face), std::max(a.face, b.face)}).second) return;
     RecoveryFailure failure;
@@ -114,9 +139,8 @@ class CrossingCure {
       shortest = std::min(shortest, distance(p, conjoint_.vertices().position(a.vertices[(k + 1) % 3])));
     }
     failure.size = 0.5 * shortest;
-    failure.proved = deviation_of(a) <= 8 * kGrid && deviation_of(b) <= 8 * kGrid;
-    failure.what = failure.proved ? "flat facets that lie on their faces cross: the body crosses itself"
-                                  : "facets of the surface mesh cross";
+    failure.proved = i != j && deviation_of(a) <= 8 * kGrid && deviation_of(b) <= 8 * kGrid;
+    failure.what = failure.proved ? "flat facets that lie on their faces cross: the body crosses itself" : what;
     result_.failures.push_back(failure);
   }
 

@@ -1,8 +1,9 @@
 // Refines t_3d until no two of its triangles cross: the paper's first stage (section 3.1) driven by crossings
 // themselves.
 //
-// Before: valid face meshes. After (complete): no two triangles of t_3d cross, exactly. Terminates: each round splits
-// at least one triangle or segment, none below the floor, and the rounds are bounded.
+// Before: valid face meshes. After (complete): no two triangles of t_3d cross, exactly, and none is folded back against
+// the normal of its face. Terminates: each round splits at least one triangle or segment, none below the floor, and the
+// rounds are bounded.
 #pragma once
 
 #include <string>
@@ -28,6 +29,7 @@ struct CrossingOptions {
 };
 struct CrossingResult {
   std::size_t first_pairs = 0;  ///< crossings of the initial meshes
+  std::size_t first_folds = 0;  ///< folded triangles of the initial meshes
   std::size_t points = 0;       ///< inserted
   int rounds = 0;
   std::vector<RecoveryFailure> failures;

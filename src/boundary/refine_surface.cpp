@@ -145,6 +145,16 @@ double deviation(const Conjoint& conjoint, FaceId face, TriangleId triangle) {
   return distance(centroid, conjoint.model().faces[face].surface->value(uv));
 }
 
+double facing(const Conjoint& conjoint, FaceId face, TriangleId triangle) {
+  const FaceMesh& mesh = conjoint.boundary().faces[face];
+  const std::array<VertexId, 3> v = mesh.vertices(triangle);
+  const Vec3 a = conjoint.vertices().position(v[0]);
+  const Vec3 normal = cross(conjoint.vertices().position(v[1]) - a, conjoint.vertices().position(v[2]) - a);
+  const Vec3 surface = conjoint.model().faces[face].surface->normal(mesh.chart.to_uv(chart_centroid(mesh, triangle)));
+  const double lengths = norm(normal) * norm(surface);
+  return lengths > 0 ? dot(normal, surface) / lengths : 1;
+}
+
 double segment_deviation(const Conjoint& conjoint, EdgeId edge, VertexId a, VertexId b) {
   const CurveMesh& curve = conjoint.boundary().curves[edge];
   for (std::size_t i = 0; i + 1 < curve.vertices.size(); ++i) {
