@@ -30,14 +30,14 @@ std::map<std::uint32_t, Key> by_cad_id(const IndexedVector<Key, T>& entities) {
 
 template <class Key, class T>
 std::vector<Key> match(const char* what, const std::vector<Entity>& entities, const IndexedVector<Key, T>& of_model,
-                       Findings& findings) {
+                       Severity severity, Findings& findings) {
   const std::map<std::uint32_t, Key> ids = by_cad_id(of_model);
   std::vector<Key> result;
   for (const Entity& entity : entities) {
     const auto found = ids.find(entity.cad_id);
     result.push_back(found == ids.end() ? Key() : found->second);
     if (found != ids.end()) continue;
-    findings.add("label_not_in_cad", Severity::error, [&] { return fmt::format("{} {}", what, entity.cad_id); });
+    findings.add("label_not_in_cad", severity, [&] { return fmt::format("{} {}", what, entity.cad_id); });
   }
   return result;
 }
@@ -45,10 +45,11 @@ std::vector<Key> match(const char* what, const std::vector<Entity>& entities, co
 MeshOnModel relate(const Mesh& mesh, const Model& model, double unit_scale, const Topology& topology,
                    Findings& findings) {
   MeshOnModel m{mesh, model, topology, unit_scale, 1e-6 * model.diagonal(), {}, {}, {}, {}, {}, {}, {}};
-  m.solids = match("solid", mesh.solids, model.solids, findings);
-  m.faces = match("face", mesh.faces, model.faces, findings);
-  m.edges = match("edge", mesh.edges, model.edges, findings);
-  m.vertices = match("vertex", mesh.vertices, model.vertices, findings);
+  m.solids = match("solid", mesh.solids, model.solids, Severity::error, findings);
+  m.faces = match("face", mesh.faces, model.faces, Severity::error, findings);
+  m.edges = match("edge", mesh.edges, model.edges, Severity::error, findings);
+  // A vertex that no face of a solid uses may be in the file and is not in the model.
+  m.vertices = match("vertex", mesh.vertices, model.vertices, Severity::warning, findings);
   for (const Point& p : mesh.points) m.points.push_back(model.frame.to_working((1 / unit_scale) * vec(p)));
   m.tolerance.assign(mesh.points.size(), 0);
   for (std::size_t i = 0; i < mesh.segments.size(); ++i) {
