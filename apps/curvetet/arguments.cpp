@@ -34,6 +34,8 @@ Exit codes:
   5   a mesh was made but is not valid (written only with --keep-invalid)
   70  internal error)";
 
+constexpr std::size_t kLeastMemory = std::size_t{64} << 20U;
+
 /// What the options of `mesh` say before they are checked together.
 struct RawMesh {
   std::vector<std::string> outputs, face_sizes, edge_sizes, solid_sizes;
@@ -119,6 +121,9 @@ void finish_mesh(const RawMesh& raw, MeshCommand& command) {
   add_local_sizes(raw.edge_sizes, LocalSize::Kind::edge, command.options.local_sizes);
   add_local_sizes(raw.solid_sizes, LocalSize::Kind::solid, command.options.local_sizes);
   Options& options = command.options;
+  if (options.memory_limit != 0 && options.memory_limit < kLeastMemory) {
+    refuse("--memory-limit must be at least 64M: the program itself needs some");
+  }
   options.recovery = raw.recovery == "paper" ? RecoveryMode::paper : RecoveryMode::conjoint;
   options.gaps = !raw.no_gaps;
   options.refine_interior = !raw.no_refine;
@@ -215,9 +220,9 @@ void describe_units_and_limits(CLI::App& app, RawMesh& raw, Options& options) {
       ->check(not_empty())
       ->type_name("SECONDS")
       ->group(group);
-  app.add_option("--memory-limit", options.memory_limit, "for the mesh's own arrays, as 800M or 4G")
+  app.add_option("--memory-limit", options.memory_limit, "bytes of memory for the program's data, as 800M or 4G")
       ->transform(CLI::AsSizeValue(false))
-      ->type_name("BYTES")
+      ->option_text("BYTES")
       ->group(group);
   app.add_flag("--no-isolate", raw.no_isolate, "read the CAD file in this process, not in a helper")->group(group);
 }
@@ -235,8 +240,8 @@ CLI::App* describe_mesh(CLI::App& app, RawMesh& raw, MeshCommand& command) {
                  ".msh: boundary nodes with their parameters as Gmsh's parametric nodes");
   mesh->add_option("--report", command.report, "JSON report, also written when meshing fails")->type_name("FILE");
   mesh->add_flag("--keep-invalid", command.keep_invalid, "write the mesh even if the final check finds it invalid");
-  CLI::Option* quiet = mesh->add_flag("-q,--quiet", command.quiet, "say nothing but errors");
-  mesh->add_flag("-v,--verbose", command.verbose, "say more")->excludes(quiet);
+  CLI::Option* quiet = mesh->add_flag("-q,--quiet", command.quiet, "say nothing but errors")->option_text(" ");
+  mesh->add_flag("-v,--verbose", command.verbose, "say more")->excludes(quiet)->option_text(" ");
   describe_sizes(*mesh, raw, command.options);
   describe_stages(*mesh, raw, command.options);
   describe_units_and_limits(*mesh, raw, command.options);

@@ -1,8 +1,10 @@
 // `curvetet mesh`: meshes, writes the outputs and the report, and says in words what was done. The report is written
 // whatever happened, a mesh only if it is valid or the user insists.
 #include <fmt/format.h>
+#include <sys/resource.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <exception>
 #include <filesystem>
 #include <new>
@@ -15,6 +17,8 @@
 namespace curvetet::cli {
 
 namespace {
+
+constexpr const char* kPleaseReport = "please report it, with the input and the command line";
 
 /// Whether a file could be put there; asked before any work, since meshing may take long.
 Status check_writable(const std::string& path) {
@@ -71,21 +75,51 @@ int finish(const MeshCommand& command, const MeshOutput& made) {
   return keep_report(command, made.report, code);
 }
 
+/// While it lives, the program gets no more than so many bytes of memory for data; 0: no limit. Allocations beyond
+/// fail.
+class DataLimit {
+ public:
+  explicit DataLimit(std::size_t bytes) {
+    if (bytes == 0 || ::getrlimit(RLIMIT_DATA, &before_) != 0) return;
+    struct rlimit limit = before_;
+    limit.rlim_cur = std::min<rlim_t>(bytes, before_.rlim_max);
+    is_set_ = ::setrlimit(RLIMIT_DATA, &limit) == 0;
+  }
+  ~DataLimit() {
+    if (is_set_) ::setrlimit(RLIMIT_DATA, &before_);
+  }
+  DataLimit(const DataLimit&) = delete;
+  DataLimit& operator=(const DataLimit&) = delete;
+
+ private:
+  struct rlimit before_ {};
+  bool is_set_ = false;
+};
+
+Result<MeshOutput> mesh_within_limits(const MeshCommand& command, Context& context, Report& report) {
+  const DataLimit limit(command.options.memory_limit);
+  return mesh({command.input}, command.options, context, &report);
+}
+
 /// An exception from within is an error like others, so that the report is still kept.
 Result<MeshOutput> mesh_or_internal_error(const MeshCommand& command, Context& context, Report& report) {
-  const auto internal = [&](const std::string& what) {
+  const auto kept = [&](Error error) {
     report.version = version();
     report.input = command.input;
-    report.errors.push_back(
-        {ErrorCode::internal, what, {}, {}, "please report it, with the input and the command line"});
-    return report.errors.back();
+    report.errors.push_back(error);
+    return error;
   };
   try {
-    return mesh({command.input}, command.options, context, &report);
+    return mesh_within_limits(command, context, report);
   } catch (const std::bad_alloc&) {
-    return internal("out of memory");
+    if (command.options.memory_limit == 0) return kept({ErrorCode::internal, "out of memory", {}, {}, kPleaseReport});
+    return kept({ErrorCode::memory_limit,
+                 "the memory limit was reached",
+                 {},
+                 {},
+                 "raise --memory-limit or ask for a larger --size"});
   } catch (const std::exception& error) {
-    return internal(error.what());
+    return kept({ErrorCode::internal, error.what(), {}, {}, kPleaseReport});
   }
 }
 

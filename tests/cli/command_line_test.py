@@ -95,6 +95,7 @@ class UsageErrors(CommandLineTest):
             ["mesh", box, "-o", mesh, "--threads", "-3"],
             ["mesh", box, "-o", mesh, "--radius-edge", "nan"],
             ["mesh", box, "-o", mesh, "--memory-limit", "much"],
+            ["mesh", box, "-o", mesh, "--memory-limit", "1M"],
             ["info"],
             ["check"],
             ["picture", mesh],
@@ -301,6 +302,13 @@ class Stopping(CommandLineTest):
                     *self.LONG)
         self.assertLess(time.monotonic() - begin, 10)
         self.assertEqual(json.loads(report.read_text())["errors"][0]["code"], "time_limit")
+        self.assertEqual(self.files(), ["r.json"])
+
+    def test_memory_limit(self):
+        report = self.folder / "r.json"
+        self.expect(4, "mesh", BODIES / "plate.step", "-o", self.folder / "a.msh", "--memory-limit", "64M", "--report",
+                    report, "--size", "0.2")
+        self.assertEqual(json.loads(report.read_text())["errors"][0]["code"], "memory_limit")
         self.assertEqual(self.files(), ["r.json"])
 
     def test_progress_bar_on_a_terminal(self):
