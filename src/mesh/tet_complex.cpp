@@ -32,12 +32,10 @@ TetId TetComplex::add(const Vertices& v) {
   if (!free_.empty()) {
     const std::uint32_t slot = free_.back();
     free_.pop_back();
-    tets_[slot] = {v, {}};
-    flags_[slot] = 0;
+    tets_[slot] = {v, {}, 0, 0};
     return TetId(slot);
   }
-  tets_.push_back({v, {}});
-  flags_.push_back(0);
+  tets_.push_back({v, {}, 0, 0});
   return TetId(tets_.size() - 1);
 }
 
@@ -67,26 +65,31 @@ void TetComplex::unlock(TetFacet f) {
 
 void TetComplex::set_lock_bit(TetFacet f, bool locked) {
   const std::uint32_t bit = 1U << f.local;
-  std::uint32_t& flags = flags_[f.tet.value()];
+  std::uint32_t& flags = tets_[f.tet.value()].flags;
   flags = locked ? (flags | bit) : (flags & ~bit);
 }
 
 void TetComplex::set_mark(TetId t, int which, bool on) {
   const std::uint32_t bit = 1U << (4 + which);
-  std::uint32_t& flags = flags_[t.value()];
+  std::uint32_t& flags = tets_[t.value()].flags;
   flags = on ? (flags | bit) : (flags & ~bit);
 }
 
-void TetComplex::reserve(std::size_t tets) {
-  tets_.reserve(tets);
-  flags_.reserve(tets);
+void TetComplex::start_flood() const {
+  if (flood_ > 0xFFFFFFF0U) {
+    for (const Tet& tet : tets_) tet.stamp = 0;
+    flood_ = 0;
+  }
+  flood_ += 4;
 }
+
+void TetComplex::reserve(std::size_t tets) { tets_.reserve(tets); }
 
 std::size_t TetComplex::bytes() const {
   // A node of the lock table: key, value, cached hash and link.
   const std::size_t lock_node = sizeof(FacetKey) + sizeof(FaceId) + 2 * sizeof(void*);
-  return tets_.capacity() * sizeof(Tet) + (flags_.capacity() + free_.capacity()) * sizeof(std::uint32_t) +
-         locks_.size() * lock_node + locks_.bucket_count() * sizeof(void*);
+  return tets_.capacity() * sizeof(Tet) + free_.capacity() * sizeof(std::uint32_t) + locks_.size() * lock_node +
+         locks_.bucket_count() * sizeof(void*);
 }
 
 }  // namespace curvetet

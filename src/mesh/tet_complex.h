@@ -77,7 +77,7 @@ class TetComplex {
   }
 
   // Locks: four bits of the flags, one a facet; the CAD face in a side table.
-  bool is_locked(TetFacet f) const { return (flags_[f.tet.value()] >> f.local) & 1U; }
+  bool is_locked(TetFacet f) const { return (tets_[f.tet.value()].flags >> f.local) & 1U; }
   FaceId locked_face(TetFacet f) const;  ///< invalid if not locked
   void lock(TetFacet f, FaceId face);    ///< both sides
   void unlock(TetFacet f);               ///< both sides
@@ -86,10 +86,20 @@ class TetComplex {
   void set_lock_bit(TetFacet f, bool locked);
 
   // Region of a tet (SolidId value + 1; 0 unknown or outside) in the flags' high bits, and two scratch marks.
-  std::uint32_t region(TetId t) const { return flags_[t.value()] >> 8; }
-  void set_region(TetId t, std::uint32_t region) { flags_[t.value()] = (flags_[t.value()] & 0xFFU) | (region << 8); }
-  bool mark(TetId t, int which) const { return (flags_[t.value()] >> (4 + which)) & 1U; }
+  std::uint32_t region(TetId t) const { return tets_[t.value()].flags >> 8; }
+  void set_region(TetId t, std::uint32_t region) {
+    tets_[t.value()].flags = (tets_[t.value()].flags & 0xFFU) | (region << 8);
+  }
+  bool mark(TetId t, int which) const { return (tets_[t.value()].flags >> (4 + which)) & 1U; }
   void set_mark(TetId t, int which, bool on);
+
+  // States 1, 2 and 3 of tets in one flood at a time: scratch, not part of the value, hence writable through const.
+  void start_flood() const;  ///< all states become 0
+  std::uint32_t flood_state(TetId t) const {
+    const std::uint32_t state = tets_[t.value()].stamp - flood_;
+    return state < 4 ? state : 0;
+  }
+  void set_flood_state(TetId t, std::uint32_t state) const { tets_[t.value()].stamp = flood_ + state; }
 
   void reserve(std::size_t tets);
   std::size_t bytes() const;
@@ -101,13 +111,15 @@ class TetComplex {
   };
   FacetKey key(TetFacet f) const;
 
-  /// Vertices and neighbours side by side, half a cache line: whoever reads one reads the other next.
-  struct alignas(32) Tet {
+  /// All of a tet side by side, in at most two cache lines: whoever reads one part reads the others next.
+  struct Tet {
     Vertices vertices;
     std::array<TetId, 4> neighbours;
+    std::uint32_t flags = 0;
+    mutable std::uint32_t stamp = 0;  ///< flood and state
   };
   std::vector<Tet> tets_;
-  std::vector<std::uint32_t> flags_;
+  mutable std::uint32_t flood_ = 0;
   std::vector<std::uint32_t> free_;
   std::unordered_map<FacetKey, FaceId, FacetHash> locks_;  // looked up, never iterated
 };

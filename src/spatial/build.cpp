@@ -106,9 +106,8 @@ Error same_place(VertexId a, VertexId b, Vec3 where) {
 /// Inserts points one by one into a complex over local numbers 0..n-1 in the order of insertion.
 class Builder {
  public:
-  Builder(TetComplex& complex, kernel::Marks& marks, std::vector<VertexId> order, const VertexStore& store,
-          std::uint64_t seed)
-      : complex_(complex), marks_(marks), order_(std::move(order)), stream_(seed) {
+  Builder(TetComplex& complex, std::vector<VertexId> order, const VertexStore& store, std::uint64_t seed)
+      : complex_(complex), order_(std::move(order)), stream_(seed) {
     positions_.reserve(order_.size());
     for (const VertexId v : order_) positions_.push_back(store.position(v));
     complex_.reserve(7 * order_.size() + 64);
@@ -169,7 +168,7 @@ class Builder {
       if (w != kInfinite && positions_[w.value()] == p) return w;
     }
     grow(first, p, order_[v.value()]);
-    star_builder_.replace(complex_, marks_, v, tets_, boundary_, star_);
+    star_builder_.replace(complex_, v, tets_, boundary_, star_);
     last_ = star_.back();
     return VertexId();
   }
@@ -193,22 +192,22 @@ class Builder {
   }
 
   void grow(TetId first, const Vec3& p, VertexId tie_id) {
-    marks_.start(complex_.slots());
+    complex_.start_flood();
     tets_.assign(1, first);
     boundary_.clear();
-    marks_.set(first.value(), kernel::Marks::kInside);
+    complex_.set_flood_state(first, kernel::kInside);
     for (std::size_t k = 0; k < tets_.size(); ++k) {
       const TetId t = tets_[k];
       for (int i = 0; i < 4; ++i) {
         const TetId next = complex_.neighbour(t, i);
-        const std::uint32_t mark = marks_.get(next.value());
-        if (mark == kernel::Marks::kInside) continue;
-        if (mark == 0 && kernel::in_conflict(complex_, sites_, next, p, tie_id)) {
-          marks_.set(next.value(), kernel::Marks::kInside);
+        const std::uint32_t state = complex_.flood_state(next);
+        if (state == kernel::kInside) continue;
+        if (state == 0 && kernel::in_conflict(complex_, sites_, next, p, tie_id)) {
+          complex_.set_flood_state(next, kernel::kInside);
           tets_.push_back(next);
           continue;
         }
-        marks_.set(next.value(), kernel::Marks::kOutside);
+        complex_.set_flood_state(next, kernel::kOutside);
         boundary_.push_back({t, i});
       }
     }
@@ -226,7 +225,6 @@ class Builder {
   }
 
   TetComplex& complex_;
-  kernel::Marks& marks_;
   std::vector<VertexId> order_;
   std::vector<Vec3> positions_;
   kernel::Stream stream_;
@@ -246,7 +244,7 @@ Status Tetrahedralization::build(std::span<const VertexId> vertices, const Conte
   vertex_tet_.clear();
   star_.clear();
   last_ = TetId();
-  Builder builder(complex_, marks_, insertion_order(vertices, *vertices_, seed_), *vertices_, seed_);
+  Builder builder(complex_, insertion_order(vertices, *vertices_, seed_), *vertices_, seed_);
   if (Status status = builder.run(context); !status.ok()) {
     complex_ = TetComplex();
     return status;

@@ -23,23 +23,16 @@
 
 namespace curvetet {
 
-using kernel::Marks;
-
 class CavitySearch {
  public:
   CavitySearch(const Tetrahedralization& mesh, VertexId vertex)
-      : mesh_(mesh),
-        complex_(mesh.complex_),
-        sites_(mesh.sites()),
-        marks_(mesh.marks_),
-        vertex_(vertex),
-        p_(mesh.position(vertex)) {
+      : mesh_(mesh), complex_(mesh.complex_), sites_(mesh.sites()), vertex_(vertex), p_(mesh.position(vertex)) {
     cavity_.vertex = vertex;
   }
 
   Cavity run(TetId hint) {
     const TetId first = mesh_.locate(p_, hint);
-    marks_.start(complex_.slots());
+    complex_.start_flood();
     if (!first.valid()) {
       cavity_.refusal = Refusal::outside;
     } else {
@@ -57,12 +50,12 @@ class CavitySearch {
   }
 
  private:
-  bool inside(TetId t) const { return marks_.get(t.value()) >= Marks::kInside; }
-  bool base(TetId t) const { return marks_.get(t.value()) == Marks::kBase; }
+  bool inside(TetId t) const { return complex_.flood_state(t) >= kernel::kInside; }
+  bool base(TetId t) const { return complex_.flood_state(t) == kernel::kBase; }
 
   void add_base(TetId t) {
     if (inside(t)) return;
-    marks_.set(t.value(), Marks::kBase);
+    complex_.set_flood_state(t, kernel::kBase);
     cavity_.tets.push_back(t);
   }
 
@@ -126,9 +119,9 @@ class CavitySearch {
       const TetId t = cavity_.tets[k];
       for (int i = 0; i < 4; ++i) {
         const TetId next = complex_.neighbour(t, i);
-        if (marks_.get(next.value()) != 0 || complex_.is_locked({t, i})) continue;
+        if (complex_.flood_state(next) != 0 || complex_.is_locked({t, i})) continue;
         const bool conflict = kernel::in_conflict(complex_, sites_, next, p_, vertex_);
-        marks_.set(next.value(), conflict ? Marks::kInside : Marks::kOutside);
+        complex_.set_flood_state(next, conflict ? kernel::kInside : kernel::kOutside);
         if (conflict) cavity_.tets.push_back(next);
       }
     }
@@ -147,7 +140,7 @@ class CavitySearch {
   /// The tet leaves the cavity, or the insertion is refused.
   void exclude(TetId t) {
     if (base(t)) cavity_.refusal = Refusal::locked_cavity;
-    marks_.set(t.value(), Marks::kOutside);
+    complex_.set_flood_state(t, kernel::kOutside);
   }
 
   void remove_invisible() {
@@ -185,16 +178,16 @@ class CavitySearch {
 
   /// Takes the last found tet around a vertex or kept segment that would vanish out of the cavity; false if none would.
   bool remove_swallower() {
-    Marks& on_boundary = mesh_.vertex_marks_;
+    kernel::VertexSet& on_boundary = mesh_.boundary_vertices_;
     on_boundary.start(mesh_.vertices().size());
     for (const TetFacet& f : cavity_.boundary) {
       for (const VertexId v : complex_.facet_vertices(f)) {
-        if (v != kInfinite) on_boundary.set(v.value(), Marks::kInside);
+        if (v != kInfinite) on_boundary.insert(v);
       }
     }
     for (auto t = cavity_.tets.rbegin(); t != cavity_.tets.rend(); ++t) {
       for (const VertexId v : complex_.vertices(*t)) {
-        const bool swallowed = v != kInfinite && on_boundary.get(v.value()) == 0;
+        const bool swallowed = v != kInfinite && !on_boundary.contains(v);
         if (swallowed) return take_out(v, v);
       }
       if (mesh_.kept_.empty()) continue;
@@ -236,7 +229,6 @@ class CavitySearch {
   const Tetrahedralization& mesh_;
   const TetComplex& complex_;
   const kernel::Sites sites_;
-  Marks& marks_;
   const VertexId vertex_;
   const Vec3 p_;  ///< where the vertex is
   Cavity cavity_;

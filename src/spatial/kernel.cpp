@@ -29,12 +29,12 @@ TetId scan(const TetComplex& complex, const Sites& sites, const Vec3& p) {
 }
 
 /// Turns around the edge (a,b) from old tet t, leaving it through the facet opposite `away`, to the new tet beyond.
-TetId turn(const TetComplex& complex, const Marks& marks, TetId t, VertexId a, VertexId b, VertexId away) {
+TetId turn(const TetComplex& complex, TetId t, VertexId a, VertexId b, VertexId away) {
   for (;;) {
     const int exit = complex.local(t, away);
     const VertexId kept = complex.vertex(t, 6 - complex.local(t, a) - complex.local(t, b) - exit);
     t = complex.neighbour(t, exit);
-    if (marks.get(t.value()) < Marks::kInside) return t;
+    if (complex.flood_state(t) < kInside) return t;
     away = kept;
   }
 }
@@ -101,15 +101,14 @@ TetId add_first_tet(TetComplex& complex, VertexId a, VertexId b, VertexId c, Ver
   return t;
 }
 
-void StarBuilder::replace(TetComplex& complex, Marks& marks, VertexId v, std::span<const TetId> tets,
+void StarBuilder::replace(TetComplex& complex, VertexId v, std::span<const TetId> tets,
                           std::span<const TetFacet> boundary, std::vector<TetId>& star) {
   add_tets(complex, v, boundary, star);
   // A sphere of F triangles has F / 2 + 2 vertices.
   if (boundary.size() / 2 + 2 <= kMostVertices) {
     glue_by_table(complex, star);
   } else {
-    marks.cover(complex.slots());
-    glue_by_turning(complex, marks, boundary, star);
+    glue_by_turning(complex, boundary, star);
   }
   for (const TetId t : tets) complex.remove(t);
 }
@@ -145,7 +144,7 @@ void StarBuilder::glue_by_table(TetComplex& complex, std::span<const TetId> star
   }
 }
 
-void StarBuilder::glue_by_turning(TetComplex& complex, const Marks& marks, std::span<const TetFacet> boundary,
+void StarBuilder::glue_by_turning(TetComplex& complex, std::span<const TetFacet> boundary,
                                   std::span<const TetId> star) const {
   for (std::size_t k = 0; k < boundary.size(); ++k) {
     const TetId t = star[k];
@@ -153,7 +152,7 @@ void StarBuilder::glue_by_turning(TetComplex& complex, const Marks& marks, std::
       if (complex.neighbour(t, i).valid()) continue;
       const VertexId a = complex.vertex(t, (i + 1) % 3);
       const VertexId b = complex.vertex(t, (i + 2) % 3);
-      const TetId other = turn(complex, marks, boundary[k].tet, a, b, complex.vertex(t, i));
+      const TetId other = turn(complex, boundary[k].tet, a, b, complex.vertex(t, i));
       complex.glue({t, i}, {other, 3 - complex.local(other, a) - complex.local(other, b)});
     }
   }

@@ -35,37 +35,29 @@ class Stream {
   std::uint64_t state_;
 };
 
-/// Marks of slots that are cleared all at once: a mark counts only with the current epoch in it.
-class Marks {
- public:
-  static constexpr std::uint32_t kOutside = 1;  ///< seen, not in the cavity
-  static constexpr std::uint32_t kInside = 2;   ///< this and larger: in the cavity
-  static constexpr std::uint32_t kBase = 3;     ///< in the cavity, and must stay there
+/// States of tets while a cavity is found (TetComplex::flood_state).
+inline constexpr std::uint32_t kOutside = 1;  ///< seen, not in the cavity
+inline constexpr std::uint32_t kInside = 2;   ///< this and larger: in the cavity
+inline constexpr std::uint32_t kBase = 3;     ///< in the cavity, and must stay there
 
-  /// Clears all marks and covers so many slots.
-  void start(std::size_t slots) {
-    cover(slots);
-    if (epoch_ > 0xFFFFFFF0U) {
+/// A set of vertices that is emptied at once.
+class VertexSet {
+ public:
+  /// Empties the set and makes room for ids below n.
+  void start(std::size_t n) {
+    if (stamps_.size() < n) stamps_.resize(n, 0);
+    if (++stamp_ == 0) {
       std::fill(stamps_.begin(), stamps_.end(), 0U);
-      epoch_ = 0;
+      stamp_ = 1;
     }
-    epoch_ += 4;
   }
-  /// More slots, unmarked.
-  void cover(std::size_t slots) {
-    if (stamps_.size() < slots) stamps_.resize(slots + slots / 2, 0);
-  }
-  /// 0 when unmarked, otherwise the state (1, 2 or 3) given to set().
-  std::uint32_t get(std::uint32_t slot) const {
-    const std::uint32_t difference = stamps_[slot] - epoch_;
-    return difference < 4 ? difference : 0;
-  }
-  void set(std::uint32_t slot, std::uint32_t state) { stamps_[slot] = epoch_ + state; }
+  void insert(VertexId v) { stamps_[v.value()] = stamp_; }
+  bool contains(VertexId v) const { return stamps_[v.value()] == stamp_; }
   std::size_t bytes() const { return stamps_.capacity() * sizeof(std::uint32_t); }
 
  private:
   std::vector<std::uint32_t> stamps_;
-  std::uint32_t epoch_ = 0;
+  std::uint32_t stamp_ = 0;
 };
 
 /// Sign of orient3d of the tet with local vertex i replaced by p; for a ghost, i must be its infinite vertex.
@@ -97,11 +89,11 @@ TetId add_first_tet(TetComplex& complex, VertexId a, VertexId b, VertexId c, Ver
 /// Replaces balls of tets by stars. The scratch arrays live as long as the object.
 class StarBuilder {
  public:
-  /// Replaces the tets, which form a ball, by the star of v over the ball's boundary. `marks` must say kInside or kBase
-  /// of `tets` and of no other. Carries locks and regions. New tets have v as local vertex 3, in the order of
-  /// `boundary`.
-  void replace(TetComplex& complex, Marks& marks, VertexId v, std::span<const TetId> tets,
-               std::span<const TetFacet> boundary, std::vector<TetId>& star);
+  /// Replaces the tets, which form a ball, by the star of v over the ball's boundary. The flood states must be kInside
+  /// or kBase for `tets` and for no other. Carries locks and regions. New tets have v as local vertex 3, in the order
+  /// of `boundary`.
+  void replace(TetComplex& complex, VertexId v, std::span<const TetId> tets, std::span<const TetFacet> boundary,
+               std::vector<TetId>& star);
   /// Makes room for vertices with ids below n; to be called before.
   void cover_vertices(std::size_t n) {
     if (numbers_.size() < n + 2) numbers_.resize(n + 2, 0);
@@ -113,8 +105,7 @@ class StarBuilder {
 
   void add_tets(TetComplex& complex, VertexId v, std::span<const TetFacet> boundary, std::vector<TetId>& star);
   void glue_by_table(TetComplex& complex, std::span<const TetId> star);
-  void glue_by_turning(TetComplex& complex, const Marks& marks, std::span<const TetFacet> boundary,
-                       std::span<const TetId> star) const;
+  void glue_by_turning(TetComplex& complex, std::span<const TetFacet> boundary, std::span<const TetId> star) const;
   std::uint32_t number_of(VertexId v) {
     std::uint32_t& number = numbers_[v.value() + 2U];  // the infinite vertex wraps to 0
     if (number >= named_ || names_[number] != v) {

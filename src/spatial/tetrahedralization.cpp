@@ -61,12 +61,12 @@ TetId Tetrahedralization::locate(Vec3 p, TetId hint) const {
 TetId Tetrahedralization::commit(const Cavity& cavity) {
   CURVETET_CHECK(cavity.ok() && !cavity.tets.empty());
   cover_vertices();
-  marks_.start(complex_.slots());
+  complex_.start_flood();
   for (const TetId t : cavity.tets) {
     CURVETET_CHECK(complex_.is_alive(t));
-    marks_.set(t.value(), kernel::Marks::kInside);
+    complex_.set_flood_state(t, kernel::kInside);
   }
-  star_builder_.replace(complex_, marks_, cavity.vertex, cavity.tets, cavity.boundary, star_);
+  star_builder_.replace(complex_, cavity.vertex, cavity.tets, cavity.boundary, star_);
   for (const TetId t : star_) touch(t);
   last_ = star_.back();
   return last_;
@@ -81,16 +81,16 @@ Refusal Tetrahedralization::insert(VertexId vertex, TetId hint) {
 void Tetrahedralization::star(VertexId v, std::vector<TetId>& out) const {
   out.clear();
   if (!contains(v)) return;
-  marks_.start(complex_.slots());
+  complex_.start_flood();
   out.push_back(vertex_tet_[v]);
-  marks_.set(out[0].value(), kernel::Marks::kInside);
+  complex_.set_flood_state(out[0], kernel::kInside);
   for (std::size_t k = 0; k < out.size(); ++k) {
     const TetId t = out[k];
     const int own = complex_.local(t, v);
     for (int i = 0; i < 4; ++i) {
       const TetId next = complex_.neighbour(t, i);
-      if (i == own || marks_.get(next.value()) != 0) continue;
-      marks_.set(next.value(), kernel::Marks::kInside);
+      if (i == own || complex_.flood_state(next) != 0) continue;
+      complex_.set_flood_state(next, kernel::kInside);
       out.push_back(next);
     }
   }
@@ -172,8 +172,8 @@ std::size_t Tetrahedralization::bytes() const {
   const std::size_t kept_node = sizeof(std::uint64_t) + sizeof(void*);
   return complex_.bytes() + vertex_tet_.raw().capacity() * sizeof(TetId) +
          kept_degree_.raw().capacity() * sizeof(std::uint32_t) + kept_.size() * kept_node +
-         kept_.bucket_count() * sizeof(void*) + star_.capacity() * sizeof(TetId) + marks_.bytes() +
-         vertex_marks_.bytes() + star_builder_.bytes();
+         kept_.bucket_count() * sizeof(void*) + star_.capacity() * sizeof(TetId) + boundary_vertices_.bytes() +
+         star_builder_.bytes();
 }
 
 void Tetrahedralization::touch(TetId t) {

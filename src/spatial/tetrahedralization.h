@@ -118,9 +118,8 @@ class Tetrahedralization {
   IndexedVector<VertexId, std::uint32_t> kept_degree_;  // how many kept segments end there
   kernel::StarBuilder star_builder_;
   std::vector<TetId> star_;
-  mutable TetId last_;                  // where the last location ended
-  mutable kernel::Marks marks_;         // by tet
-  mutable kernel::Marks vertex_marks_;  // by vertex
+  mutable TetId last_;                           // where the last location ended
+  mutable kernel::VertexSet boundary_vertices_;  // scratch of find_cavity
 };
 
 }  // namespace curvetet
