@@ -1,5 +1,5 @@
-// Bodies as locked tetrahedralizations of solid 0, made without recovery: points on a convex surface, whose hull's facets are
-// locked; or points on any surface with a box around, where tets go to the side their centroids are on.
+// Bodies as locked tetrahedralizations of solid 0, made without recovery: points on a convex surface, whose hull's
+// facets are locked; or points on any surface with a box around, where tets go to the side their centroids are on.
 #pragma once
 
 #include <cmath>
@@ -48,8 +48,8 @@ inline std::unique_ptr<Body> convex_body(const std::vector<Vec3>& points,
   return body;
 }
 
-/// The body {distance < 0} with these points on its surface, within a box. Tets are inside where their centroid is, flat ones on
-/// either side by rounding, and the facets between inside and outside are locked.
+/// The body {distance < 0} with these points on its surface, within a box. Tets are inside where their centroid is,
+/// flat ones on either side by rounding, and the facets between inside and outside are locked.
 inline std::unique_ptr<Body> implicit_body(const std::vector<Vec3>& points, const std::function<double(Vec3)>& distance,
                                            const std::function<FaceId(Vec3, Vec3, Vec3)>& face_of) {
   auto body = std::make_unique<Body>();
@@ -115,8 +115,8 @@ inline std::unique_ptr<Body> box_body(Vec3 half, double h) {
   });
 }
 
-/// Cylinder, turned: rings on the side (face 0), a lattice on the caps (faces 1 and 2), all with rounded coordinates, so that
-/// there are flat tets on every face.
+/// Cylinder, turned: rings on the side (face 0), a lattice on the caps (faces 1 and 2), all with rounded coordinates,
+/// so that there are flat tets on every face.
 inline std::unique_ptr<Body> cylinder_body(double r, double height, double h) {
   std::vector<Vec3> points;
   const int n = static_cast<int>(std::lround(2 * std::numbers::pi * r / h));

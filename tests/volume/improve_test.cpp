@@ -83,6 +83,34 @@ TEST(Improve, WithoutInteriorVertices) {
   EXPECT_GE(angles_of(*body).worst, before.worst - 1e-9);
 }
 
+TEST(Improve, FlatTetsOnTheFacesOfATurnedCylinder) {
+  const auto body = refined(cylinder_body(0.25, 0.6, 0.1), 0.1);
+  EXPECT_GT(angles_of(*body).below_half, 0U);
+  improve_and_check(*body);
+  const Angles angles = angles_of(*body);
+  EXPECT_EQ(angles.below_half, 0U);
+  EXPECT_GT(angles.worst, 10);
+}
+
+TEST(Improve, ExchangesLocksOfFlatTetsWhereAllowed) {
+  const auto body = torus_body(0.3, 0.1, 0.05);
+  const std::size_t locked = body->mesh->complex().locked_count();
+  ImproveOptions options;
+  std::size_t asked = 0;
+  options.facet_allowed = [&asked](VertexId, VertexId, VertexId, FaceId face) {
+    EXPECT_EQ(face, FaceId(0));
+    ++asked;
+    return true;
+  };
+  Context context;
+  const auto result = improve(*body->mesh, body->store, options, context);
+  ASSERT_TRUE(result.ok());
+  EXPECT_EQ(defects(*body->mesh), "");
+  EXPECT_GT(asked, 0U);
+  EXPECT_GT(result.value().relocks, 0U);
+  EXPECT_EQ(body->mesh->complex().locked_count(), locked);
+}
+
 TEST(Improve, StopsWhenAsked) {
   const auto body = refined(ball_body(0.4, 0.1), 0.1);
   Context context;
