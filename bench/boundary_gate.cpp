@@ -108,7 +108,7 @@ void run(const Model& model, double divisor, Json& line) {
   line["causes"] = causes;
   line["faults"] = faults.size();
   line["details"] = details;
-  line["pass"] = result.value().failures.empty() && faults.empty() && area_error < 0.35;
+  line["pass"] = result.value().failures.empty() && faults.empty() && area_error < 0.7;
 }
 
 }  // namespace

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <map>
+#include <set>
 #include <tuple>
 
 #include "boundary/simplicial.h"
@@ -109,29 +110,41 @@ std::string owner_name(const Model& model, Owner owner) {
   return "the inside";
 }
 
+/// A vertex and a solid it bounds (invalid for a face of none).
+using Membership = std::pair<VertexId, SolidId>;
+
+std::vector<Membership> memberships(const Model& model, const BoundaryMesh& mesh) {
+  std::vector<Membership> all;
+  for (std::size_t f = 0; f < mesh.faces.size(); ++f) {
+    const ModelFace& face = model.faces[FaceId(f)];
+    const FaceMesh& t_ps = mesh.faces[FaceId(f)];
+    for (std::size_t n = 0; n < t_ps.node_count(); ++n) {
+      if (!t_ps.triangle_at(NodeId(n)).valid()) continue;
+      const VertexId v = t_ps.node(NodeId(n)).vertex;
+      if (face.front.valid() || !face.back.valid()) all.emplace_back(v, face.front);
+      if (face.back.valid()) all.emplace_back(v, face.back);
+    }
+  }
+  std::sort(all.begin(), all.end());
+  all.erase(std::unique(all.begin(), all.end()), all.end());
+  return all;
+}
+
 void check_places(const Model& model, const BoundaryMesh& mesh, const VertexStore& vertices,
                   std::vector<std::string>& faults) {
-  std::vector<VertexId> used;
-  for (const FaceMesh& face : mesh.faces) {
-    for (std::size_t n = 0; n < face.node_count(); ++n) {
-      if (face.triangle_at(NodeId(n)).valid()) used.push_back(face.node(NodeId(n)).vertex);
-    }
-  }
-  std::sort(used.begin(), used.end());
-  used.erase(std::unique(used.begin(), used.end()), used.end());
-  std::vector<std::tuple<double, double, double, VertexId>> places;
-  for (const VertexId v : used) {
+  std::vector<std::tuple<SolidId, double, double, double, VertexId>> places;
+  for (const auto& [v, solid] : memberships(model, mesh)) {
     const Vec3 p = vertices.position(v);
-    places.emplace_back(p.x, p.y, p.z, v);
+    places.emplace_back(solid, p.x, p.y, p.z, v);
   }
   std::sort(places.begin(), places.end());
+  std::set<std::pair<VertexId, VertexId>> pairs;  // two solids may share the same pair
   for (std::size_t i = 1; i < places.size(); ++i) {
-    const auto& [x0, y0, z0, a] = places[i - 1];
-    const auto& [x1, y1, z1, b] = places[i];
-    if (x0 == x1 && y0 == y1 && z0 == z1) {
-      faults.push_back("vertices " + number(a.value()) + " of " + owner_name(model, vertices.owner(a)) + " and " +
-                       number(b.value()) + " of " + owner_name(model, vertices.owner(b)) + " are at one place");
-    }
+    const auto& [s0, x0, y0, z0, a] = places[i - 1];
+    const auto& [s1, x1, y1, z1, b] = places[i];
+    if (s0 != s1 || x0 != x1 || y0 != y1 || z0 != z1 || !pairs.emplace(a, b).second) continue;
+    faults.push_back("vertices " + number(a.value()) + " of " + owner_name(model, vertices.owner(a)) + " and " +
+                     number(b.value()) + " of " + owner_name(model, vertices.owner(b)) + " are at one place");
   }
 }
 

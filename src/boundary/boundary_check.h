@@ -17,7 +17,9 @@ namespace curvetet {
 /// 4. t_3d is simplicial over vertex ids (simplicial.h).
 /// 5. Around each solid, every edge is run through as often in one direction as in the other, and the volume is
 /// positive.
-/// 6. No two vertices of the surface meshes are at one place.
+/// 6. No two vertices on the boundary of one solid are at one place. (Solids that touch without sharing entities are no
+/// fault of
+///    these meshes.)
 std::vector<std::string> check_boundary(const Model& model, const BoundaryMesh& mesh, const VertexStore& vertices);
 
 }  // namespace curvetet

@@ -13,6 +13,8 @@ namespace curvetet {
 
 namespace {
 
+constexpr int kLastDepth = 6;  // of flips, where nothing else is left
+
 class EdgeRecovery {
  public:
   EdgeRecovery(Conjoint& conjoint, const EdgeRecoveryOptions& options, Context& context)
@@ -81,12 +83,22 @@ class EdgeRecovery {
     const bool was_present = present(s);
     const ConjointResult done = refine_segment(conjoint_, s.edge, s.a, s.b, refinement);
     if (!done.ok()) {
-      if (!was_present) fail(s, done.refusal);
+      if (!was_present) reconnect_or_fail(s, done.refusal);
       return;
     }
     ++result_.splits;
     queue.push_back({s.edge, s.a, done.vertex});
     queue.push_back({s.edge, done.vertex, s.b});
+  }
+
+  // A segment at the floor of spacing: flips are what is left, also where splitting is the rule.
+  void reconnect_or_fail(const Conjoint::Segment& s, ConjointRefusal refusal) {
+    if (!recover_edge_by_flips(tets_, s.a, s.b, kLastDepth)) {
+      fail(s, refusal);
+      return;
+    }
+    tets_.keep_segment(s.a, s.b);
+    ++result_.flipped;
   }
 
   void fail(const Conjoint::Segment& s, ConjointRefusal refusal) {

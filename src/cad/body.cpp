@@ -65,6 +65,7 @@ void replace_shape(CadBody& body, const TopoDS_Shape& shape,
     if (type == TopAbs_SOLID) body.solid_paths = std::move(paths);
   }
   body.shape = shape;
+  body.measures = CadMeasures();
 }
 
 }  // namespace curvetet

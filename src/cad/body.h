@@ -13,6 +13,12 @@
 
 namespace curvetet {
 
+/// The kernel's own integrals, costly: found once and kept with the shape. Not a number where not found yet.
+struct CadMeasures {
+  std::vector<double> face_areas;     ///< in the order of the faces' labels
+  std::vector<double> shell_volumes;  ///< signed, shell by shell as TopExp_Explorer finds them in solid after solid
+};
+
 /// A shape with labels. The labels of a type are as many as, and in the order of, TopExp::MapShapes on the shape.
 struct CadBody {
   TopoDS_Shape shape;
@@ -21,6 +27,7 @@ struct CadBody {
   std::vector<char> shared_product;      ///< per solid: its product has other solids too (known while reading only)
   std::string unit = "mm";
   std::vector<HealingNote> notes;
+  CadMeasures measures;
 };
 
 /// The four types that carry labels, in the order solids, faces, edges, vertices.

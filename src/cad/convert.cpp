@@ -19,6 +19,7 @@
 #include <TopoDS_Solid.hxx>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "cad/fit.h"
 #include "cad/guard.h"
@@ -34,6 +35,7 @@ constexpr double kInfinite = 1e50;
 constexpr double kLooseBox = 3;
 /// A solid whose volume over its area to the power 3/2 is less than this has none (a ball has 0.09).
 constexpr double kFlat = 1e-10;
+constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
 
 /// A face as one shell of a solid uses it.
 struct FaceUse {
@@ -50,14 +52,16 @@ struct ShellUse {
 
 class Converter {
  public:
-  Converter(const CadBody& body, const std::string& source)
+  Converter(CadBody& body, const std::string& source)
       : body_(body),
         source_(source),
         notes_(body.notes),
         solids_(sub_shapes(body.shape, TopAbs_SOLID)),
         faces_(sub_shapes(body.shape, TopAbs_FACE)),
         edges_(sub_shapes(body.shape, TopAbs_EDGE)),
-        vertices_(sub_shapes(body.shape, TopAbs_VERTEX)) {}
+        vertices_(sub_shapes(body.shape, TopAbs_VERTEX)) {
+    body_.measures.face_areas.resize(static_cast<std::size_t>(faces_.Extent()), kUnknown);
+  }
 
   Result<Model> run() {
     if (faces_.IsEmpty()) return Error{ErrorCode::no_faces, source_ + " holds no faces"};
@@ -110,7 +114,7 @@ class Converter {
     return flat ? flat : Error{ErrorCode::no_solid, source_ + " holds no solid with faces"};
   }
 
-  std::vector<ShellUse> shells_of(int solid) const {
+  std::vector<ShellUse> shells_of(int solid) {
     std::vector<ShellUse> shells;
     for (TopExp_Explorer shell(solids_(solid), TopAbs_SHELL); shell.More(); shell.Next()) {
       ShellUse use;
@@ -121,23 +125,41 @@ class Converter {
         use.faces.push_back(
             {faces_.FindIndex(face.Current()), orientation == TopAbs_REVERSED, orientation == TopAbs_INTERNAL});
       }
+      const std::size_t number = shell_count_++;
       if (use.faces.empty()) continue;
-      GProp_GProps properties;
-      BRepGProp::VolumeProperties(use.shell, properties, false, false, false);
-      use.volume = properties.Mass();
+      use.volume = shell_volume(use.shell, number);
       shells.push_back(std::move(use));
     }
     return shells;
   }
 
+  double shell_volume(const TopoDS_Shape& shell, std::size_t number) {
+    auto& volumes = body_.measures.shell_volumes;
+    if (volumes.size() <= number) volumes.resize(number + 1, kUnknown);
+    if (std::isnan(volumes[number])) {
+      GProp_GProps properties;
+      BRepGProp::VolumeProperties(shell, properties, false, false, false);
+      volumes[number] = properties.Mass();
+    }
+    return volumes[number];
+  }
+
+  double face_area(int face) {
+    double& area = body_.measures.face_areas[static_cast<std::size_t>(face - 1)];
+    if (std::isnan(area)) {
+      GProp_GProps properties;
+      BRepGProp::SurfaceProperties(faces_(face), properties, false, false);
+      area = std::abs(properties.Mass());
+    }
+    return area;
+  }
+
   /// Two layers of faces that cancel, for example.
-  static bool without_volume(const std::vector<ShellUse>& shells) {
+  bool without_volume(const std::vector<ShellUse>& shells) {
     double volume = 0, area = 0;
     for (const ShellUse& shell : shells) {
-      GProp_GProps properties;
-      BRepGProp::SurfaceProperties(shell.shell, properties, false, false);
       volume += std::abs(shell.volume);
-      area += std::abs(properties.Mass());
+      for (const FaceUse& use : shell.faces) area += face_area(use.face);
     }
     return volume <= kFlat * std::pow(area, 1.5);
   }
@@ -319,20 +341,21 @@ class Converter {
       const std::size_t index = static_cast<std::size_t>(f);
       if (face_used_[index] == 0) continue;
       const std::size_t edges_before = model_.edges.size();
-      face_id_[index] = add_face(TopoDS::Face(faces_(f)), body_.faces[index - 1], context);
+      face_id_[index] = add_face(f, context);
       if (model_.edges.size() > edges_before) note(entity("face", face_label(f)), "a pole was put in");
     }
   }
 
-  FaceId add_face(const TopoDS_Face& shape, const Label& label, const LoopContext& context) {
+  FaceId add_face(int number, const LoopContext& context) {
+    const TopoDS_Face& shape = TopoDS::Face(faces_(number));
     ModelFace face;
-    face.label = label;
+    face.label = face_label(number);
     face.tolerance = working(BRep_Tool::Tolerance(shape));
     const Handle(Geom_Surface) geometry = BRep_Tool::Surface(shape);
     if (geometry.IsNull()) return model_.faces.push_back(std::move(face));
     const std::shared_ptr<Surface> surface = make_surface(geometry, model_.frame);
     face.surface = surface;
-    trace_loops(shape, context, face);
+    if (trace_loops(shape, context, face) > 0) note(entity("face", face.label), "an inner wire is turned");
     surface->set_domain(face.low, face.high);
     for (TopoDS_Iterator it(shape.Oriented(TopAbs_FORWARD)); it.More(); it.Next()) {
       if (it.Value().ShapeType() != TopAbs_VERTEX) continue;
@@ -343,9 +366,7 @@ class Converter {
       face.internal_vertices.push_back(vertex_of(vertex));
       face.internal_vertex_uv.push_back({uv.X(), uv.Y()});
     }
-    GProp_GProps properties;
-    BRepGProp::SurfaceProperties(shape, properties, false, false);
-    face.area = std::abs(properties.Mass()) * model_.frame.scale * model_.frame.scale;
+    face.area = face_area(number) * model_.frame.scale * model_.frame.scale;
     return model_.faces.push_back(std::move(face));
   }
 
@@ -454,7 +475,7 @@ class Converter {
     }
   }
 
-  const CadBody& body_;
+  CadBody& body_;
   const std::string& source_;
   std::vector<HealingNote> notes_;
   TopTools_IndexedMapOfShape solids_, faces_, edges_, vertices_;
@@ -465,14 +486,14 @@ class Converter {
   std::vector<EdgeId> edge_id_;
   std::vector<CadVertexId> vertex_id_;
   std::uint32_t next_vertex_label_ = 0, next_edge_label_ = 0;
-  std::size_t ignored_ = 0;
+  std::size_t ignored_ = 0, shell_count_ = 0;
   Box3 loose_box_;
   Model model_;
 };
 
 }  // namespace
 
-Result<Model> convert_body(const CadBody& body, const std::string& source) {
+Result<Model> convert_body(CadBody& body, const std::string& source) {
   return guarded(ErrorCode::reader_failed, "cannot use the shape in " + source,
                  [&] { return Converter(body, source).run(); });
 }

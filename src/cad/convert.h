@@ -10,7 +10,8 @@
 namespace curvetet {
 
 /// Before: the shape's solids are the body; faces outside of them are ignored (with a note). Errors: no_faces,
-/// no_solid, unbounded, not_finite, zero_size, overlapping_solids. `source` names the file in messages.
-Result<Model> convert_body(const CadBody& body, const std::string& source);
+/// no_solid, unbounded, not_finite, zero_size, overlapping_solids. `source` names the file in messages. The body's
+/// measures are used where they are there, and completed.
+Result<Model> convert_body(CadBody& body, const std::string& source);
 
 }  // namespace curvetet

@@ -11,8 +11,11 @@
 namespace curvetet {
 namespace {
 
-constexpr int kSamples = 12;
+constexpr int kSamples = 16;
 constexpr double kLargestTolerance = 1e-4;  ///< of the body's diagonal
+
+/// How far a projection may move in (u,v), as part of the face's domain, and how far at the ends, where loops join.
+constexpr double kMove = 0.05, kEndMove = 1e-3;
 
 /// uv(t): the foot of curve(t) on the surface, near guess(t).
 class ProjectedCurve final : public ParameterCurve {
@@ -77,6 +80,19 @@ class Fitter {
     return worst;
   }
 
+  /// Near a pole the foot may lie far away in (u,v), and the loop would no longer close.
+  bool stays_near(const ModelFace& face, const ModelEdge& edge, const ParameterCurve& given,
+                  const ParameterCurve& projected) const {
+    const Vec2 extent = face.high - face.low;
+    for (int i = 0; i <= kSamples; ++i) {
+      const double t = edge.low + (edge.high - edge.low) * i / kSamples;
+      const Vec2 moved = projected.value(t) - given.value(t);
+      const double allowed = i == 0 || i == kSamples ? kEndMove : kMove;
+      if (std::abs(moved.x) > allowed * extent.x || std::abs(moved.y) > allowed * extent.y) return false;
+    }
+    return true;
+  }
+
   /// True if the parameter curve was replaced.
   bool fit(const ModelFace& face, EdgeUse& use) {
     const ModelEdge& edge = model_.edges[use.edge];
@@ -86,7 +102,7 @@ class Fitter {
     if (!edge.degenerate && off > std::max(edge.tolerance, face.tolerance)) {
       auto projected = std::make_shared<ProjectedCurve>(edge.curve->clone(), face.surface->clone(), use.curve->clone());
       const double better = deviation(face, edge, *projected);
-      if (better < 0.5 * off) {
+      if (better < 0.5 * off && stays_near(face, edge, *use.curve, *projected)) {
         off = better;
         use.curve = std::move(projected);
         replaced = true;

@@ -14,7 +14,7 @@ Result<Model> load_model(const std::string& path, const LoadOptions& options, Co
   if (const Result<CadFormat> format = detect_format(path); !format) return format.error();
   if (options.isolate) {
     if (const auto helper = find_helper(options)) {
-      const Result<CadBody> body = read_isolated(path, *helper, options, context);
+      Result<CadBody> body = read_isolated(path, *helper, options, context);
       if (!body) return body.error();
       return convert_body(body.value(), path);
     }

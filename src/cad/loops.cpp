@@ -37,7 +37,7 @@ class Tracer {
     period_ = {out.surface->period_u(), out.surface->period_v()};
   }
 
-  void run() {
+  int run() {
     for (TopoDS_Iterator wire(face_); wire.More(); wire.Next()) {
       if (wire.Value().ShapeType() != TopAbs_WIRE) continue;
       collect(wire.Value());
@@ -47,6 +47,7 @@ class Tracer {
     }
     align_loops();
     set_domain();
+    return turned_;
   }
 
  private:
@@ -255,13 +256,27 @@ class Tracer {
     }
     std::rotate(out_.loops.begin(), out_.loops.begin() + static_cast<std::ptrdiff_t>(outer),
                 out_.loops.begin() + static_cast<std::ptrdiff_t>(outer) + 1);
-    if (largest == 0 || period_ == Vec2{}) return;
+    if (largest == 0) return;
     const std::vector<Vec2> rim = polygon(out_.loops.front());
     for (std::size_t i = 1; i < out_.loops.size(); ++i) {
       const std::vector<Vec2> points = polygon(out_.loops[i]);
       if (points.empty()) continue;
-      if (const Vec2 shift = shift_inside(rim, points); shift != Vec2{}) move(out_.loops[i], shift);
+      const Vec2 shift = shift_inside(rim, points);
+      if (shift != Vec2{}) move(out_.loops[i], shift);
+      // A hole that runs the wrong way round: some writers orient inner wires at random.
+      if (signed_area(points) > 0 && count_inside(rim, points, shift) == points.size()) turn(out_.loops[i]);
     }
+  }
+
+  static std::size_t count_inside(const std::vector<Vec2>& rim, const std::vector<Vec2>& points, Vec2 shift) {
+    return static_cast<std::size_t>(
+        std::count_if(points.begin(), points.end(), [&](Vec2 p) { return inside(rim, p + shift); }));
+  }
+
+  void turn(Loop& loop) {
+    std::reverse(loop.uses.begin(), loop.uses.end());
+    for (EdgeUse& use : loop.uses) use.reversed = !use.reversed;
+    ++turned_;
   }
 
   Vec2 shift_inside(const std::vector<Vec2>& rim, const std::vector<Vec2>& points) const {
@@ -271,8 +286,7 @@ class Tracer {
       for (const int j : {0, 1, -1, 2, -2}) {
         if ((i != 0 && period_.x == 0) || (j != 0 && period_.y == 0)) continue;
         const Vec2 shift{i * period_.x, j * period_.y};
-        const auto count = static_cast<std::size_t>(
-            std::count_if(points.begin(), points.end(), [&](Vec2 p) { return inside(rim, p + shift); }));
+        const std::size_t count = count_inside(rim, points, shift);
         if (count > most) most = count, best = shift;
       }
     }
@@ -321,13 +335,14 @@ class Tracer {
   const LoopContext& context_;
   ModelFace& out_;
   Vec2 period_, extent_;
+  int turned_ = 0;
   std::vector<RawUse> uses_;
 };
 
 }  // namespace
 
-void trace_loops(const TopoDS_Face& face, const LoopContext& context, ModelFace& out) {
-  Tracer(face, context, out).run();
+int trace_loops(const TopoDS_Face& face, const LoopContext& context, ModelFace& out) {
+  return Tracer(face, context, out).run();
 }
 
 }  // namespace curvetet

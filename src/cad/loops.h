@@ -21,6 +21,7 @@ struct LoopContext {
 /// Fills loops, internal edges and the domain's box of a face whose surface and tolerance are set. Wires with several
 /// closed chains give several loops, slits go to the internal edges, and where the loop jumps in (u,v) at a point where
 /// the surface collapses, a pole is put in. What does not join stays open.
-void trace_loops(const TopoDS_Face& face, const LoopContext& context, ModelFace& out);
+/// Holes that run the wrong way round are turned; returns how many.
+int trace_loops(const TopoDS_Face& face, const LoopContext& context, ModelFace& out);
 
 }  // namespace curvetet

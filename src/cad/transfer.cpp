@@ -127,6 +127,8 @@ Parsed parse(std::istream& in) {
     if (kind == "end") parsed.complete = true;
     if (kind == "unit") parsed.body.unit = fields.at(1);
     if (kind == "note") parsed.body.notes.push_back({fields.at(1), fields.at(2)});
+    if (kind == "area") parsed.body.measures.face_areas.push_back(number(fields.at(1)));
+    if (kind == "volume") parsed.body.measures.shell_volumes.push_back(number(fields.at(1)));
     if (kind == "error") read_error(fields, parsed.error.emplace());
     if (kind == "entity" && parsed.error) parsed.error->entities.push_back(fields.at(1));
     for (const TopAbs_ShapeEnum type : kLabelled) {
@@ -161,6 +163,8 @@ bool write_transfer(const CadBody& body, const std::string& out_path) {
       write_label(out, type_name(type), labels[i], type == TopAbs_SOLID ? body.solid_paths[i] : "");
     }
   }
+  for (const double area : body.measures.face_areas) out << "area\t" << hex(area) << '\n';
+  for (const double volume : body.measures.shell_volumes) out << "volume\t" << hex(volume) << '\n';
   out << "end\n";
   return out.flush().good();
 }

@@ -81,9 +81,10 @@ std::optional<Vec4> step_of(const System& s, double damping) {
 
 }  // namespace
 
-ParameterPair approach(const Surface& one, const Surface& two, ParameterPair start) {
+ParameterPair approach(const Surface& one, const Surface& two, ParameterPair start, double furthest) {
   ParameterPair best = start;
   SurfaceSecond a = one.second(best.one), b = two.second(best.two);
+  const Vec3 origin = a.value;
   double least = distance(a.value, b.value);
   double damping = 1e-9;
   for (int i = 0; i < kSteps && least > 0; ++i) {
@@ -98,7 +99,7 @@ ParameterPair approach(const Surface& one, const Surface& two, ParameterPair sta
     const SurfaceSecond next_b = two.second(*foot);
     const double distance_next = distance(next_a.value, next_b.value);
     if (!(distance_next < least)) continue;
-    const bool done = least - distance_next < 1e-3 * least;
+    const bool done = least - distance_next < 1e-3 * least || distance(origin, next_a.value) > furthest;
     best = {next, *foot};
     a = next_a;
     b = next_b;

@@ -38,6 +38,7 @@ constexpr double kFacing = 0.5;             ///< cosine between the normals and 
 constexpr double kFold = 3;                 ///< way along the same face against the way through space
 constexpr double kSteepest = 0.5;           ///< gap over distance to a shared edge, above which a wedge is no gap
 constexpr int kToAndFro = 4;                ///< projections towards the closest pair
+constexpr double kContact = 1e-6;           ///< of the body's diagonal: closer sheets are meant to touch
 constexpr std::size_t kNearestPatches = 2;  ///< of each face that a sample is projected from
 constexpr std::size_t kBlock = 256;         ///< patches or edge samples per task
 constexpr std::size_t kMostProbes = 20000;  ///< per patch, or stretch between two samples of an edge
@@ -272,7 +273,7 @@ class GapSearch {
   double look_at(const Probe& probe, FaceId other, const Foot& foot, const Patch* patch) {
     double demand = emit(probe, other, foot);
     if (!patch) return demand;
-    const auto closest = closest_pair(probe, other, foot);
+    const auto closest = closest_pair(probe, other, foot, patch->extent());
     if (!closest || !(closest->second.gap < 0.99 * foot.gap)) return demand;
     const auto& [there, there_foot] = *closest;
     // Further away other patches are closer to it.
@@ -300,11 +301,11 @@ class GapSearch {
   }
 
   /// From a probe and its foot on another face to the closest pair of the two surfaces, if it is elsewhere.
-  std::optional<std::pair<Probe, Foot>> closest_pair(Probe probe, FaceId other, Foot foot) {
+  std::optional<std::pair<Probe, Foot>> closest_pair(Probe probe, FaceId other, Foot foot, double furthest) {
     const Vec3 across = (1 / foot.gap) * (foot.point - probe.point);
     if (std::abs(dot(across, probe.axis)) > 1 - 1e-5) return std::nullopt;  // closest already
     const FaceBending& bend = bending_of(probe.face);
-    const auto pair = approach(bend.surface(), bending_of(other).surface(), {probe.uv, foot.uv});
+    const auto pair = approach(bend.surface(), bending_of(other).surface(), {probe.uv, foot.uv}, furthest);
     const TrimmedDomain& here = *scene_.input.domains[probe.face.value()];
     const TrimmedDomain& there = *scene_.input.domains[other.value()];
     probe.uv = here.lifted(pair.one);
@@ -323,7 +324,8 @@ class GapSearch {
   bool is_gap(const Probe& probe, FaceId other, const Foot& foot) {
     const Model& model = scene_.input.model;
     const double own = probe.face.valid() ? model.faces[probe.face].tolerance : model.edges[probe.edge].tolerance;
-    if (foot.gap <= 2 * (own + model.faces[other].tolerance) + 64 * kGrid) return false;
+    const double contact = std::max(2 * (own + model.faces[other].tolerance), kContact * model.diagonal());
+    if (foot.gap <= contact + 64 * kGrid) return false;
     const Vec3 across = (1 / foot.gap) * (foot.point - probe.point);
     if (std::abs(dot(across, probe.axis)) < kFacing) return false;
     const Vec3 normal = bending_of(other).surface().normal(foot.uv);

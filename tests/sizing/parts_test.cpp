@@ -42,9 +42,14 @@ TEST(TrimmedDomain, RingHasAHole) {
     EXPECT_EQ(domain.inside(uv), radius > 4 && radius < 10) << radius;
     const double away = std::min(std::abs(radius - 10), std::abs(radius - 4));
     const SurfaceFirst s = surface.first(uv);
-    EXPECT_FALSE(domain.is_near_boundary(uv, {norm(s.du), norm(s.dv)}, 0.8 * away));
-    EXPECT_TRUE(
-        domain.is_near_boundary(uv, {norm(s.du), norm(s.dv)}, 1.2 * away + model.frame.length_to_working(0.05)));
+    const Vec2 scale{norm(s.du), norm(s.dv)};
+    const auto near = [&](double reach) {
+      return domain.is_near_boundary(uv, scale, model.frame.length_to_working(reach));
+    };
+    if (away > 0.1) {
+      EXPECT_FALSE(near(away - 0.05));
+    }
+    EXPECT_TRUE(near(away + 0.05));
     if (domain.inside(uv)) {
       EXPECT_TRUE(domain.meets(uv - Vec2{1e-3, 1e-3}, uv + Vec2{1e-3, 1e-3}));
     }
@@ -113,7 +118,7 @@ TEST(ClosestPair, OfTwoBallsIsOnTheLineOfCentres) {
   for (const double gap : {0.1, 1e-3, 1e-6}) {
     at.origin = Vec3{0.2 + gap, 0, 0};
     const auto two = make_sphere(at, 0.1);
-    const auto pair = sizing::approach(*one, *two, {{0.3, 0.2}, {std::numbers::pi + 0.2, -0.3}});
+    const auto pair = sizing::approach(*one, *two, {{0.3, 0.2}, {std::numbers::pi + 0.2, -0.3}}, 1);
     EXPECT_NEAR(distance(one->value(pair.one), two->value(pair.two)), gap, 1e-3 * gap);
   }
 }
@@ -130,7 +135,7 @@ TEST(ClosestPair, NeverGrowsTheDistance) {
   std::uniform_real_distribution<double> angle(0, kTurn);
   for (int i = 0; i < 200; ++i) {
     const sizing::ParameterPair start{{angle(random), angle(random)}, {angle(random), 0.05 * angle(random)}};
-    const auto pair = sizing::approach(*one, *two, start);
+    const auto pair = sizing::approach(*one, *two, start, 1);
     EXPECT_LE(distance(one->value(pair.one), two->value(pair.two)),
               distance(one->value(start.one), two->value(start.two)));
   }
