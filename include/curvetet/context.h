@@ -33,9 +33,7 @@ class Context {
   void cancel() { cancelled_.store(true, std::memory_order_relaxed); }
   bool cancelled() const { return cancelled_.load(std::memory_order_relaxed); }
   /// Cancelled or out of time: to be asked often (one relaxed load and, where a deadline is set, a clock reading).
-  bool should_stop() const {
-    return cancelled() || (deadline && std::chrono::steady_clock::now() > *deadline);
-  }
+  bool should_stop() const { return cancelled() || (deadline && std::chrono::steady_clock::now() > *deadline); }
   /// The error that belongs to should_stop().
   Error stop_error(std::string_view stage) const;
 
@@ -50,8 +48,8 @@ class Context {
   double reported_ = 0;
 };
 
-/// Calls body(i) for i in [0, n) on the context's threads; the largest first if the caller orders them so. Results must be
-/// written to slots by i, so that the outcome does not depend on the number of threads. Exceptions are rethrown.
+/// Calls body(i) for i in [0, n) on the context's threads; the largest first if the caller orders them so. Results must
+/// be written to slots by i, so that the outcome does not depend on the number of threads. Exceptions are rethrown.
 void parallel_for(const Context& context, std::size_t n, const std::function<void(std::size_t)>& body);
 
 }  // namespace curvetet

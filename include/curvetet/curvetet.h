@@ -22,8 +22,9 @@ struct MeshOutput {
   Report report;
 };
 
-/// Meshes a body. Never prints, never exits, keeps no global state; may run on any thread. Cancel and progress through the
-/// context. On failure the error says what, where and what to do; `report_on_failure`, if given, receives what was finished.
+/// Meshes a body. Never prints, never exits, keeps no global state; may run on any thread. Cancel and progress through
+/// the context. On failure the error says what, where and what to do; `report_on_failure`, if given, receives what was
+/// finished.
 Result<MeshOutput> mesh(const Input& input, const Options& options, Context& context,
                         Report* report_on_failure = nullptr);
 

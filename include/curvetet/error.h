@@ -1,4 +1,5 @@
-// The three kinds of failure: the input's fault (Error in a Result), our fault (InternalError, thrown), cancelled (a code).
+// The three kinds of failure: the input's fault (Error in a Result), our fault (InternalError, thrown), cancelled (a
+// code).
 #pragma once
 
 #include <optional>
@@ -67,8 +68,8 @@ class InternalError : public std::logic_error {
 [[noreturn]] void fail_internal(const char* what, const char* file, int line);
 
 /// Always-on O(1) internal check.
-#define CURVETET_CHECK(condition) \
-  do {                            \
+#define CURVETET_CHECK(condition)                                                \
+  do {                                                                           \
     if (!(condition)) ::curvetet::fail_internal(#condition, __FILE__, __LINE__); \
   } while (false)
 
@@ -76,8 +77,8 @@ class InternalError : public std::logic_error {
 template <class T>
 class [[nodiscard]] Result {
  public:
-  Result(T value) : data_(std::move(value)) {}       // NOLINT: implicit by intent
-  Result(Error error) : data_(std::move(error)) {}   // NOLINT: implicit by intent
+  Result(T value) : data_(std::move(value)) {}      // NOLINT: implicit by intent
+  Result(Error error) : data_(std::move(error)) {}  // NOLINT: implicit by intent
   bool ok() const { return data_.index() == 0; }
   explicit operator bool() const { return ok(); }
   T& value() { return std::get<0>(data_); }

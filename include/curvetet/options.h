@@ -21,18 +21,18 @@ struct LocalSize {
 enum class RecoveryMode { conjoint, paper };
 
 struct Options {
-  std::optional<double> size;        ///< largest edge length; default: a tenth of the body's diagonal
-  std::optional<double> min_size;    ///< floor of derived sizes; default: a thousandth of the size
-  double curvature = 12;             ///< elements per full turn; 0: off
-  std::optional<double> chord_height;///< largest distance of a chord to its arc; default: off
-  double grading = 0.5;              ///< growth of the size per length, > 0
-  bool gaps = true;                  ///< chord height at most a quarter of the local gap
+  std::optional<double> size;          ///< largest edge length; default: a tenth of the body's diagonal
+  std::optional<double> min_size;      ///< floor of derived sizes; default: a thousandth of the size
+  double curvature = 12;               ///< elements per full turn; 0: off
+  std::optional<double> chord_height;  ///< largest distance of a chord to its arc; default: off
+  double grading = 0.5;                ///< growth of the size per length, > 0
+  bool gaps = true;                    ///< chord height at most a quarter of the local gap
   std::vector<LocalSize> local_sizes;
   std::function<double(Point)> size_callback;
 
-  std::string unit;                  ///< output unit "mm", "m", "inch"; default: the input's
-  std::string input_unit;            ///< for files that carry none; default: mm
-  bool isolate_cad = true;           ///< read and heal in a helper process
+  std::string unit;         ///< output unit "mm", "m", "inch"; default: the input's
+  std::string input_unit;   ///< for files that carry none; default: mm
+  bool isolate_cad = true;  ///< read and heal in a helper process
 
   RecoveryMode recovery = RecoveryMode::conjoint;
   bool refine_interior = true;

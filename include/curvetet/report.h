@@ -46,7 +46,7 @@ struct ReductionReport {
 
 /// Counts of recovery as a whole; those of the paper's remeshing cases are of `--recovery paper` only.
 struct RecoveryCounts {
-  std::size_t crossings = 0;         ///< pairs of triangles of the first t_3d that crossed
+  std::size_t crossings = 0;  ///< pairs of triangles of the first t_3d that crossed
   std::size_t edge_flips = 0, edge_splits = 0;
   int rounds = 0;
   std::size_t stage_one_points = 0, stage_one_allowed = 0, stage_two_points = 0;
@@ -75,9 +75,9 @@ struct Report {
   std::vector<std::string> warnings;
   std::uint64_t mesh_hash = 0;
   bool valid = false;
-  std::vector<Error> errors;   ///< empty when a valid mesh was made
+  std::vector<Error> errors;  ///< empty when a valid mesh was made
 
-  std::string to_json() const; ///< indented, keys in a fixed order
+  std::string to_json() const;  ///< indented, keys in a fixed order
 };
 
 }  // namespace curvetet

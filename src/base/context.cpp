@@ -1,18 +1,20 @@
 #include "base/context.h"
 
-#include <algorithm>
-
+#include <fmt/format.h>
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
 #include <tbb/task_arena.h>
 
-#include <fmt/format.h>
+#include <algorithm>
 
 namespace curvetet {
 
 Error Context::stop_error(std::string_view stage) const {
   if (cancelled()) return {ErrorCode::cancelled, fmt::format("cancelled during {}", stage)};
-  return {ErrorCode::time_limit, fmt::format("time limit reached during {}", stage), {}, {},
+  return {ErrorCode::time_limit,
+          fmt::format("time limit reached during {}", stage),
+          {},
+          {},
           "raise --time-limit or ask for a larger --size"};
 }
 
@@ -28,11 +30,12 @@ void parallel_for(const Context& context, std::size_t n, const std::function<voi
   }
   tbb::task_arena arena(context.threads > 0 ? context.threads : tbb::task_arena::automatic);
   arena.execute([&] {
-    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, n, 1),
-                      [&](const tbb::blocked_range<std::size_t>& range) {
-                        for (std::size_t i = range.begin(); i != range.end(); ++i) body(i);
-                      },
-                      tbb::simple_partitioner());
+    tbb::parallel_for(
+        tbb::blocked_range<std::size_t>(0, n, 1),
+        [&](const tbb::blocked_range<std::size_t>& range) {
+          for (std::size_t i = range.begin(); i != range.end(); ++i) body(i);
+        },
+        tbb::simple_partitioner());
   });
 }
 

@@ -24,7 +24,14 @@ struct Owner {
 
 /// The stage that made a vertex.
 enum class Origin : std::uint8_t {
-  curve_mesh, face_mesh, edge_recovery, stage_one, stage_two, ladder, steiner, interior
+  curve_mesh,
+  face_mesh,
+  edge_recovery,
+  stage_one,
+  stage_two,
+  ladder,
+  steiner,
+  interior
 };
 
 /// Positions are working coordinates on the grid (geometry/frame.h). Ids are never reused.

@@ -134,6 +134,23 @@ int insphere_narrow(const std::array<Step3, 4>& rows) {
               lift64(r) * three(s.z, pq, p.z, qs, q.z, sp) - lift64(s) * three(p.z, qr, -q.z, pr, r.z, pq));
 }
 
+/// insphere of any differences.
+int insphere_wide(const std::array<Step3, 4>& rows) {
+  const auto& [p, q, r, s] = rows;
+  const Wide pq = minor(p.x, p.y, q.x, q.y);
+  const Wide qr = minor(q.x, q.y, r.x, r.y);
+  const Wide rs = minor(r.x, r.y, s.x, s.y);
+  const Wide sp = minor(s.x, s.y, p.x, p.y);
+  const Wide pr = minor(p.x, p.y, r.x, r.y);
+  const Wide qs = minor(q.x, q.y, s.x, s.y);
+  Columns sum;
+  sum.add(1, combine(q.z, rs, -r.z, qs, s.z, qr), lift(p));
+  sum.add(-1, combine(r.z, sp, s.z, pr, p.z, rs), lift(q));
+  sum.add(1, combine(s.z, pq, p.z, qs, q.z, sp), lift(r));
+  sum.add(-1, combine(p.z, qr, -q.z, pr, r.z, pq), lift(s));
+  return sum.sign();
+}
+
 std::array<Step3, 4> rows_of(Vec3 a, Vec3 b, Vec3 c, Vec3 d, Vec3 e) {
   return {steps(a, e), steps(b, e), steps(c, e), steps(d, e)};
 }
@@ -212,50 +229,37 @@ int rungs::insphere_extended(Vec3 a, Vec3 b, Vec3 c, Vec3 d, Vec3 e) {
   return narrow(rows) ? insphere_narrow(rows) : filters::kUnknown;
 }
 
-int rungs::insphere_exact(Vec3 a, Vec3 b, Vec3 c, Vec3 d, Vec3 e) {
-  const auto [p, q, r, s] = rows_of(a, b, c, d, e);
-  const Wide pq = minor(p.x, p.y, q.x, q.y);
-  const Wide qr = minor(q.x, q.y, r.x, r.y);
-  const Wide rs = minor(r.x, r.y, s.x, s.y);
-  const Wide sp = minor(s.x, s.y, p.x, p.y);
-  const Wide pr = minor(p.x, p.y, r.x, r.y);
-  const Wide qs = minor(q.x, q.y, s.x, s.y);
-  Columns sum;
-  sum.add(1, combine(q.z, rs, -r.z, qs, s.z, qr), lift(p));
-  sum.add(-1, combine(r.z, sp, s.z, pr, p.z, rs), lift(q));
-  sum.add(1, combine(s.z, pq, p.z, qs, q.z, sp), lift(r));
-  sum.add(-1, combine(p.z, qr, -q.z, pr, r.z, pq), lift(s));
-  return sum.sign();
+int rungs::insphere_exact(Vec3 a, Vec3 b, Vec3 c, Vec3 d, Vec3 e) { return insphere_wide(rows_of(a, b, c, d, e)); }
+
+int insphere_unfiltered(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d, const Vec3& e) {
+  PredicateCounts& counts = predicate_counts();
+  std::array<Step3, 4> rows = rows_of(a, b, c, d, e);
+  if (narrow(rows)) {
+    ++counts.extended;
+    return insphere_narrow(rows);
+  }
+  ++counts.exact;
+  return insphere_wide(rows_of(a, b, c, d, e));
 }
 
 int insphere(Vec3 a, Vec3 b, Vec3 c, Vec3 d, Vec3 e) {
-  PredicateCounts& counts = predicate_counts();
   const int filtered = filters::insphere(a, b, c, d, e);
-  if (filtered != filters::kUnknown) {
-    ++counts.filter;
-    return filtered;
-  }
-  const int extended = rungs::insphere_extended(a, b, c, d, e);
-  if (extended != filters::kUnknown) {
-    ++counts.extended;
-    return extended;
-  }
-  ++counts.exact;
-  return rungs::insphere_exact(a, b, c, d, e);
+  if (filtered == filters::kUnknown) return insphere_unfiltered(a, b, c, d, e);
+  ++predicate_counts().filter;
+  return filtered;
 }
 
 int insphere_tie(const std::array<Vec3, 5>& points, const std::array<VertexId, 5>& ids) {
   ++predicate_counts().perturbed;
-  std::array<int, 5> order{0, 1, 2, 3, 4};
-  // Insertion sort, largest id first: five elements, and it is hot on lattices.
-  for (std::size_t i = 1; i < 5; ++i) {
-    for (std::size_t j = i;
-         j > 0 && ids[static_cast<std::size_t>(order[j - 1])] < ids[static_cast<std::size_t>(order[j])]; --j) {
-      std::swap(order[j - 1], order[j]);
-    }
-  }
   const auto& [a, b, c, d, e] = points;
-  for (const int raised : order) {
+  unsigned tried = 0;
+  for (int round = 0; round < 5; ++round) {
+    // The largest id not yet tried: the first mostly decides, so nothing is sorted.
+    std::size_t raised = 5;
+    for (std::size_t k = 0; k < 5; ++k) {
+      if ((tried >> k & 1U) == 0 && (raised == 5 || ids[raised] < ids[k])) raised = k;
+    }
+    tried |= 1U << raised;
     // The coefficient of the raised point's height in the determinant.
     const int coefficient = raised == 0   ? orient3d(e, b, c, d)
                             : raised == 1 ? orient3d(a, e, c, d)

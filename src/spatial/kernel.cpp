@@ -54,7 +54,7 @@ bool in_conflict(const TetComplex& complex, const Sites& sites, TetId t, const V
   const Vec3& d = sites.position(v[3]);
   const int filtered = filters::insphere(a, b, c, d, p);
   if (filtered == 1 || filtered == -1) return filtered > 0;
-  const int exact = insphere(a, b, c, d, p);
+  const int exact = filtered == 0 ? 0 : insphere_unfiltered(a, b, c, d, p);
   if (exact != 0) return exact > 0;
   return insphere_tie({a, b, c, d, p},
                       {sites.tie_id(v[0]), sites.tie_id(v[1]), sites.tie_id(v[2]), sites.tie_id(v[3]), tie_id}) > 0;
