@@ -67,6 +67,7 @@ class Child {
  public:
   Child(const std::string& program, std::vector<std::string> arguments) {
     std::vector<char*> argv;
+    argv.reserve(arguments.size() + 1);
     for (std::string& argument : arguments) argv.push_back(argument.data());
     argv.push_back(nullptr);
     std::string marker = std::string(kHelperVariable) + "=1";

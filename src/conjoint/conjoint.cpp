@@ -29,7 +29,7 @@ const char* name(ConjointRefusal refusal) {
   return "none";
 }
 
-Conjoint::Conjoint(const Model& model, VertexStore& vertices, BoundaryMesh& boundary, Criterion criterion)
+Conjoint::Conjoint(const Model& model, VertexStore& vertices, BoundaryMesh& boundary, const Criterion& criterion)
     : model_(&model), vertices_(&vertices), boundary_(&boundary), uses_(model.edges.size()) {
   for (std::size_t f = 0; f < model.faces.size(); ++f) {
     const FaceId face(f);

@@ -45,7 +45,7 @@ class Conjoint {
   using Criterion = std::function<FaceMesh::FlipWanted(FaceId)>;
 
   /// All references must outlive this object. The criterion decides the flips of each face mesh.
-  Conjoint(const Model& model, VertexStore& vertices, BoundaryMesh& boundary, Criterion criterion);
+  Conjoint(const Model& model, VertexStore& vertices, BoundaryMesh& boundary, const Criterion& criterion);
 
   /// From now on insertions go into the tetrahedralization too; null detaches.
   void attach(Tetrahedralization* tets) { tets_ = tets; }
