@@ -195,7 +195,7 @@ bool cure(Conjoint& conjoint, const Offence& offence) {
 std::vector<Offence> find_offences(const Model& model, const BoundaryMesh& mesh) { return Census(model, mesh).run(); }
 
 std::string describe(const Offence& offence, const Model& model) {
-  const std::string at = " on face " + std::to_string(model.faces[offence.face].label.cad_id) + ", vertices " +
+  std::string at = " on face " + std::to_string(model.faces[offence.face].label.cad_id) + ", vertices " +
                          std::to_string(offence.a.value()) + " " + std::to_string(offence.b.value());
   switch (offence.kind) {
     case Offence::Kind::self_edge:

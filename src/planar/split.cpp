@@ -84,7 +84,8 @@ FaceMesh::SplitPlan FaceMesh::plan_inside(FaceEdge edge, Vec2 q) const {
 // What lies outside of the chord and meets the closed triangle has a boundary edge that does. One from a (or b) may
 // leave the triangle there: it must not point into the closed angle of the triangle at a.
 FaceMesh::SplitPlan FaceMesh::plan_outside(FaceEdge edge, Vec2 q) const {
-  const auto [na, nb] = ends(edge);
+  const std::array<NodeId, 2> chord = ends(edge);
+  const NodeId na = chord[0], nb = chord[1];
   const Vec2 a = point(na), b = point(nb);
   const Corner region{b, a, q};
   SplitPlan plan{PlanarRefusal::none, SplitPlan::Side::outside, edge, {}};

@@ -150,7 +150,7 @@ std::vector<Cone> distinct(std::vector<Cone> cones) {
 
 }  // namespace
 
-SizeField::SizeField(std::vector<SizeSource> sources, const SizingOptions& options) : options_(options) {
+SizeField::SizeField(const std::vector<SizeSource>& sources, const SizingOptions& options) : options_(options) {
   face_limit_ = options_.face_size;
   edge_limit_ = options_.edge_size;
   add(sources);

@@ -55,7 +55,7 @@ struct SizeReduction {
 class SizeField {
  public:
   SizeField() = default;
-  SizeField(std::vector<SizeSource> sources, const SizingOptions& options);
+  SizeField(const std::vector<SizeSource>& sources, const SizingOptions& options);
   /// Size at a point; thread-safe (as far as the callback is). O(log n) on average.
   double at(Vec3 p) const;
   /// As at(), further bounded by the sizes asked for the entity.
