@@ -142,7 +142,11 @@ void limit(int resource, rlim_t value) {
 
 void limit_this_process(std::size_t memory, double seconds) {
   limit(RLIMIT_CORE, 0);
+#ifndef __SANITIZE_ADDRESS__  // the sanitizer reserves terabytes of addresses
   if (memory > 0) limit(RLIMIT_AS, static_cast<rlim_t>(memory));
+#else
+  (void)memory;
+#endif
   if (seconds > 0) limit(RLIMIT_CPU, static_cast<rlim_t>(std::ceil(seconds)) + 1);
 #ifdef __linux__
   prctl(PR_SET_PDEATHSIG, SIGKILL);
