@@ -12,6 +12,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 
 #include "base/vec.h"
 
@@ -34,37 +35,68 @@ inline int orient3d(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) 
   return bound == 0 ? 0 : kUnknown;  // a whole column of zeros: a plane parallel to a coordinate plane
 }
 
-/// Sign of insphere, or kUnknown.
-inline int insphere(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d, const Vec3& e) {
-  const Vec3 p = a - e;
-  const Vec3 q = b - e;
-  const Vec3 r = c - e;
-  const Vec3 s = d - e;
-  const double pq = p.x * q.y - p.y * q.x;
-  const double qr = q.x * r.y - q.y * r.x;
-  const double rs = r.x * s.y - r.y * s.x;
-  const double sp = s.x * p.y - s.y * p.x;
-  const double pr = p.x * r.y - p.y * r.x;
-  const double qs = q.x * s.y - q.y * s.x;
-  const double pqr = p.z * qr - q.z * pr + r.z * pq;
-  const double qrs = q.z * rs - r.z * qs + s.z * qr;
-  const double rsp = r.z * sp + s.z * pr + p.z * rs;
-  const double spq = s.z * pq + p.z * qs + q.z * sp;
-  const double lp = norm2(p);
-  const double lq = norm2(q);
-  const double lr = norm2(r);
-  const double ls = norm2(s);
-  const double det = (lp * qrs - lq * rsp) + (lr * spq - ls * pqr);
-  constexpr double kUnit = 288 * 0x1p-53;
-  const double l = std::max(std::max(lp, lq), std::max(lr, ls));
-  if (det * det > (kUnit * kUnit) * (l * l) * (l * l) * l) return det > 0 ? 1 : -1;
-  const double x = std::max(std::max(std::fabs(p.x), std::fabs(q.x)), std::max(std::fabs(r.x), std::fabs(s.x)));
-  const double y = std::max(std::max(std::fabs(p.y), std::fabs(q.y)), std::max(std::fabs(r.y), std::fabs(s.y)));
-  const double z = std::max(std::max(std::fabs(p.z), std::fabs(q.z)), std::max(std::fabs(r.z), std::fabs(s.z)));
-  const double bound = kUnit * (x * y * z * l);
-  if (det > bound) return 1;
-  if (det < -bound) return -1;
-  return bound == 0 ? 0 : kUnknown;
-}
+/// insphere in double: the determinant and what bounds its error.
+class Insphere {
+ public:
+  Insphere(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d, const Vec3& e)
+      : p_(a - e), q_(b - e), r_(c - e), s_(d - e) {
+    const double pq = p_.x * q_.y - p_.y * q_.x;
+    const double qr = q_.x * r_.y - q_.y * r_.x;
+    const double rs = r_.x * s_.y - r_.y * s_.x;
+    const double sp = s_.x * p_.y - s_.y * p_.x;
+    const double pr = p_.x * r_.y - p_.y * r_.x;
+    const double qs = q_.x * s_.y - q_.y * s_.x;
+    const double pqr = p_.z * qr - q_.z * pr + r_.z * pq;
+    const double qrs = q_.z * rs - r_.z * qs + s_.z * qr;
+    const double rsp = r_.z * sp + s_.z * pr + p_.z * rs;
+    const double spq = s_.z * pq + p_.z * qs + q_.z * sp;
+    const double lp = norm2(p_);
+    const double lq = norm2(q_);
+    const double lr = norm2(r_);
+    const double ls = norm2(s_);
+    det_ = (lp * qrs - lq * rsp) + (lr * spq - ls * pqr);
+    lift_ = std::max(std::max(lp, lq), std::max(lr, ls));
+  }
+
+  /// The sign by the error bound, or kUnknown.
+  int filtered() const {
+    constexpr double kUnit = 288 * 0x1p-53;
+    const double l2 = lift_ * lift_;
+    if (det_ * det_ > (kUnit * kUnit) * l2 * l2 * lift_) return det_ > 0 ? 1 : -1;
+    const double bound = kUnit * size();
+    if (det_ > bound) return 1;
+    if (det_ < -bound) return -1;
+    return bound == 0 ? 0 : kUnknown;
+  }
+
+  /// The sign where nothing was rounded, or kUnknown: with g the common power of two of the differences, every value on
+  /// the way is a multiple of a power of g, at most 72 XYZL and g^5 in the end, and so fits a double if XYZL is small.
+  int narrow() const {
+    const double g = common_power();
+    const double g2 = g * g;
+    if (128 * size() > 0x1p53 * (g2 * g2 * g)) return kUnknown;
+    return det_ > 0 ? 1 : det_ < 0 ? -1 : 0;
+  }
+
+  /// The sign by the rungs after the filter.
+  int unfiltered() const;
+
+ private:
+  double size() const {
+    const double x = std::max(std::max(std::fabs(p_.x), std::fabs(q_.x)), std::max(std::fabs(r_.x), std::fabs(s_.x)));
+    const double y = std::max(std::max(std::fabs(p_.y), std::fabs(q_.y)), std::max(std::fabs(r_.y), std::fabs(s_.y)));
+    const double z = std::max(std::max(std::fabs(p_.z), std::fabs(q_.z)), std::max(std::fabs(r_.z), std::fabs(s_.z)));
+    return x * y * z * lift_;
+  }
+  double common_power() const {
+    const auto steps = [](double x) { return static_cast<std::int64_t>(x * 0x1p42); };
+    const auto bits = [&](const Vec3& v) { return steps(v.x) | steps(v.y) | steps(v.z); };
+    const std::int64_t all = bits(p_) | bits(q_) | bits(r_) | bits(s_);
+    return 0x1p-42 * static_cast<double>(all & -all);
+  }
+
+  Vec3 p_, q_, r_, s_;
+  double det_ = 0, lift_ = 0;
+};
 
 }  // namespace curvetet::filters

@@ -3,8 +3,8 @@
 //
 // Rungs, cheapest first:
 //   filter    double with the bounds derived in filters.h and below;
-//   extended  (insphere) the differences divided by their common power of two; if 24 bits are left, which is so on the
-//             lattices that CAD bodies love, the determinant fits a 128-bit integer;
+//   extended  (insphere) the same doubles, where the common power of two of the differences shows that nothing was
+//             rounded; so it is on the lattices that CAD bodies love;
 //   exact     limbs of 44 bits whose products are summed in 128-bit columns and carried once at the end.
 // The exact rungs allocate nothing and do not branch on the data.
 //
@@ -14,7 +14,6 @@
 #include "predicates/predicates.h"
 
 #include <array>
-#include <bit>
 #include <cstdlib>
 
 #include "predicates/filters.h"
@@ -98,45 +97,8 @@ Wide lift(const Step3& p) {
   return static_cast<Wide>(p.x) * p.x + static_cast<Wide>(p.y) * p.y + static_cast<Wide>(p.z) * p.z;
 }
 
-constexpr int kNarrowBits = 24;
-
-/// Divides all differences by their common power of two; true if every one then has at most 24 bits.
-bool narrow(std::array<Step3, 4>& rows) {
-  std::uint64_t all = 0;
-  std::uint64_t magnitude = 0;
-  for (const Step3& p : rows) {
-    for (const std::int64_t v : {p.x, p.y, p.z}) {
-      all |= static_cast<std::uint64_t>(v);
-      magnitude |= static_cast<std::uint64_t>(v < 0 ? -v : v);
-    }
-  }
-  const int shift = all == 0 ? 0 : std::countr_zero(all);
-  if ((magnitude >> shift) >> kNarrowBits != 0) return false;
-  for (Step3& p : rows) p = {p.x >> shift, p.y >> shift, p.z >> shift};
-  return true;
-}
-
-/// insphere of differences below 2^24: minors below 2^49, 3x3 minors below 2^75, the determinant below 2^127.
-int insphere_narrow(const std::array<Step3, 4>& rows) {
-  const auto& [p, q, r, s] = rows;
-  const std::int64_t pq = p.x * q.y - p.y * q.x;
-  const std::int64_t qr = q.x * r.y - q.y * r.x;
-  const std::int64_t rs = r.x * s.y - r.y * s.x;
-  const std::int64_t sp = s.x * p.y - s.y * p.x;
-  const std::int64_t pr = p.x * r.y - p.y * r.x;
-  const std::int64_t qs = q.x * s.y - q.y * s.x;
-  const auto three = [](std::int64_t z1, std::int64_t m1, std::int64_t z2, std::int64_t m2, std::int64_t z3,
-                        std::int64_t m3) {
-    return static_cast<Wide>(z1) * m1 + static_cast<Wide>(z2) * m2 + static_cast<Wide>(z3) * m3;
-  };
-  const auto lift64 = [](const Step3& v) { return v.x * v.x + v.y * v.y + v.z * v.z; };
-  return sign(lift64(p) * three(q.z, rs, -r.z, qs, s.z, qr) - lift64(q) * three(r.z, sp, s.z, pr, p.z, rs) +
-              lift64(r) * three(s.z, pq, p.z, qs, q.z, sp) - lift64(s) * three(p.z, qr, -q.z, pr, r.z, pq));
-}
-
-/// insphere of any differences.
-int insphere_wide(const std::array<Step3, 4>& rows) {
-  const auto& [p, q, r, s] = rows;
+/// insphere of differences from the fifth point.
+int insphere_of(const Step3& p, const Step3& q, const Step3& r, const Step3& s) {
   const Wide pq = minor(p.x, p.y, q.x, q.y);
   const Wide qr = minor(q.x, q.y, r.x, r.y);
   const Wide rs = minor(r.x, r.y, s.x, s.y);
@@ -149,10 +111,6 @@ int insphere_wide(const std::array<Step3, 4>& rows) {
   sum.add(1, combine(s.z, pq, p.z, qs, q.z, sp), lift(r));
   sum.add(-1, combine(p.z, qr, -q.z, pr, r.z, pq), lift(s));
   return sum.sign();
-}
-
-std::array<Step3, 4> rows_of(Vec3 a, Vec3 b, Vec3 c, Vec3 d, Vec3 e) {
-  return {steps(a, e), steps(b, e), steps(c, e), steps(d, e)};
 }
 
 Vec2 drop(Vec3 a, int axis) { return axis == 0 ? Vec2{a.y, a.z} : axis == 1 ? Vec2{a.z, a.x} : Vec2{a.x, a.y}; }
@@ -222,29 +180,33 @@ int orient3d(Vec3 a, Vec3 b, Vec3 c, Vec3 d) {
   return rungs::orient3d_exact(a, b, c, d);
 }
 
-int rungs::insphere_filter(Vec3 a, Vec3 b, Vec3 c, Vec3 d, Vec3 e) { return filters::insphere(a, b, c, d, e); }
-
-int rungs::insphere_extended(Vec3 a, Vec3 b, Vec3 c, Vec3 d, Vec3 e) {
-  std::array<Step3, 4> rows = rows_of(a, b, c, d, e);
-  return narrow(rows) ? insphere_narrow(rows) : filters::kUnknown;
+int rungs::insphere_filter(Vec3 a, Vec3 b, Vec3 c, Vec3 d, Vec3 e) {
+  return filters::Insphere(a, b, c, d, e).filtered();
 }
 
-int rungs::insphere_exact(Vec3 a, Vec3 b, Vec3 c, Vec3 d, Vec3 e) { return insphere_wide(rows_of(a, b, c, d, e)); }
+int rungs::insphere_extended(Vec3 a, Vec3 b, Vec3 c, Vec3 d, Vec3 e) {
+  return filters::Insphere(a, b, c, d, e).narrow();
+}
 
-int insphere_unfiltered(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d, const Vec3& e) {
+int rungs::insphere_exact(Vec3 a, Vec3 b, Vec3 c, Vec3 d, Vec3 e) {
+  return insphere_of(steps(a, e), steps(b, e), steps(c, e), steps(d, e));
+}
+
+int filters::Insphere::unfiltered() const {
   PredicateCounts& counts = predicate_counts();
-  std::array<Step3, 4> rows = rows_of(a, b, c, d, e);
-  if (narrow(rows)) {
+  const int sign_if_narrow = narrow();
+  if (sign_if_narrow != kUnknown) {
     ++counts.extended;
-    return insphere_narrow(rows);
+    return sign_if_narrow;
   }
   ++counts.exact;
-  return insphere_wide(rows_of(a, b, c, d, e));
+  return insphere_of(steps(p_, {}), steps(q_, {}), steps(r_, {}), steps(s_, {}));
 }
 
 int insphere(Vec3 a, Vec3 b, Vec3 c, Vec3 d, Vec3 e) {
-  const int filtered = filters::insphere(a, b, c, d, e);
-  if (filtered == filters::kUnknown) return insphere_unfiltered(a, b, c, d, e);
+  const filters::Insphere value(a, b, c, d, e);
+  const int filtered = value.filtered();
+  if (filtered == filters::kUnknown) return value.unfiltered();
   ++predicate_counts().filter;
   return filtered;
 }

@@ -1,5 +1,5 @@
-// Exact geometric predicates on grid points (geometry/frame.h): signs only, by a ladder of filter, narrow
-// integers, fixed width; and the perturbed family, which is never zero.
+// Exact geometric predicates on grid points (geometry/frame.h): signs only, by a ladder of filter,
+// doubles that were not rounded, fixed width; and the perturbed family, which is never zero.
 //
 // orient3d(a,b,c,d) is the sign of det[b-a, c-a, d-a]: (0,0,0), (1,0,0), (0,1,0), (0,0,1) is positive.
 //   1. An even permutation of the arguments keeps the sign, an odd one negates it.
@@ -25,8 +25,6 @@ int insphere(Vec3 a, Vec3 b, Vec3 c, Vec3 d, Vec3 e);
 /// points a..d are coplanar. The result is that of infinitesimally perturbed points: consistent over all calls.
 int insphere_perturbed(const Vec3* positions, VertexId a, VertexId b, VertexId c, VertexId d, VertexId e);
 
-/// insphere without its first rung, for callers that have tried the filter themselves.
-int insphere_unfiltered(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d, const Vec3& e);
 /// The second half of insphere_perturbed, for callers that hold the points by other means: the sign that the
 /// perturbation gives to five points a..e whose insphere is zero.
 int insphere_tie(const std::array<Vec3, 5>& points, const std::array<VertexId, 5>& ids);

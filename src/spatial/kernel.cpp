@@ -52,10 +52,10 @@ bool in_conflict(const TetComplex& complex, const Sites& sites, TetId t, const V
   const Vec3& b = sites.position(v[1]);
   const Vec3& c = sites.position(v[2]);
   const Vec3& d = sites.position(v[3]);
-  const int filtered = filters::insphere(a, b, c, d, p);
-  if (filtered == 1 || filtered == -1) return filtered > 0;
-  const int exact = filtered == 0 ? 0 : insphere_unfiltered(a, b, c, d, p);
-  if (exact != 0) return exact > 0;
+  const filters::Insphere value(a, b, c, d, p);
+  int sign = value.filtered();
+  if (sign == filters::kUnknown) sign = value.unfiltered();
+  if (sign != 0) return sign > 0;
   return insphere_tie({a, b, c, d, p},
                       {sites.tie_id(v[0]), sites.tie_id(v[1]), sites.tie_id(v[2]), sites.tie_id(v[3]), tie_id}) > 0;
 }
