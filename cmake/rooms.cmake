@@ -3,7 +3,7 @@ add_library(curvetet_flags INTERFACE)
 target_include_directories(curvetet_flags INTERFACE ${PROJECT_SOURCE_DIR}/src ${PROJECT_SOURCE_DIR}/include)
 # The same bytes on every run: no contraction of products and sums into fused operations.
 target_compile_options(curvetet_flags INTERFACE -Wall -Wextra -Wpedantic -Wshadow -Wconversion
-  -Wno-sign-conversion -Werror -ffp-contract=off)
+  -Wno-sign-conversion $<$<CXX_COMPILER_ID:GNU>:-Werror> -ffp-contract=off)
 if(CURVETET_SANITIZE)
   target_compile_options(curvetet_flags INTERFACE -fsanitize=address,undefined -fno-sanitize-recover=undefined -fno-omit-frame-pointer)
   target_link_options(curvetet_flags INTERFACE -fsanitize=address,undefined)
@@ -13,6 +13,10 @@ set(CURVETET_OPENCASCADE TKXDESTEP TKXDEIGES TKXCAF TKLCAF TKCAF TKVCAF TKCDF TK
   TKIGES TKXSBase TKShHealing TKBool TKBO TKPrim TKFillet TKOffset TKTopAlgo TKMesh TKBRep TKGeomAlgo TKGeomBase TKG3d
   TKG2d TKMath TKernel)
 set(CURVETET_ROOMS)
+
+if(CURVETET_FUZZ)
+  target_compile_options(curvetet_flags INTERFACE -fsanitize=fuzzer-no-link)
+endif()
 
 function(curvetet_room name)
   cmake_parse_arguments(ROOM "" "" "ROOMS;LINK" ${ARGN})
