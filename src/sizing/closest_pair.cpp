@@ -7,7 +7,6 @@
 #include "sizing/closest_pair.h"
 
 #include <array>
-#include <optional>
 
 namespace curvetet::sizing {
 
@@ -108,6 +107,36 @@ ParameterPair approach(const Surface& one, const Surface& two, ParameterPair sta
     damping = 1e-9;
   }
   return best;
+}
+
+std::optional<ParameterPair> meeting_point(const Surface& one, const Surface& two, ParameterPair start, double contact,
+                                           double furthest) {
+  ParameterPair pair = start;
+  SurfaceFirst a = one.first(pair.one);
+  const Vec3 origin = a.value;
+  Vec3 away = a.value - two.value(pair.two);
+  for (int i = 0; i < kSteps; ++i) {
+    const double least = norm(away);
+    if (least <= contact) return pair;
+    // The slope of the distance along the first surface: in lengths, and solved for in parameters.
+    const Vec3 n = (1 / least) * away;
+    const double E = norm2(a.du), F = dot(a.du, a.dv), G = norm2(a.dv);
+    const double det = E * G - F * F;
+    if (!(det > 1e-12 * E * G)) return std::nullopt;
+    const double p = dot(n, a.du), q = dot(n, a.dv);
+    const Vec2 slope{(G * p - F * q) / det, (E * q - F * p) / det};
+    const double steepness2 = p * slope.x + q * slope.y;
+    if (!(steepness2 > 0) || !(least <= std::sqrt(steepness2) * furthest)) return std::nullopt;
+    pair.one = pair.one - (least / steepness2) * slope;
+    a = one.first(pair.one);
+    if (!(distance(a.value, origin) <= furthest)) return std::nullopt;
+    const auto foot = two.project(a.value, pair.two);
+    if (!foot) return std::nullopt;
+    pair.two = *foot;
+    away = a.value - two.value(pair.two);
+    if (!(norm(away) < 0.9 * least)) return std::nullopt;
+  }
+  return std::nullopt;
 }
 
 }  // namespace curvetet::sizing

@@ -271,6 +271,7 @@ class GapSearch {
   }
 
   double look_at(const Probe& probe, FaceId other, const Foot& foot, const Patch* patch) {
+    if (patch && meets_nearby(probe, other, foot)) return probe.size;
     double demand = emit(probe, other, foot);
     if (!patch) return demand;
     const auto closest = closest_pair(probe, other, foot, patch->extent());
@@ -281,6 +282,16 @@ class GapSearch {
     const double least = emit(there, other, there_foot);
     const double grading = scene_.input.options.grading;
     return std::min(demand, least + grading * distance(there.point, probe.point));
+  }
+
+  /// Do the two faces cross or touch within one element of the probe?
+  bool meets_nearby(const Probe& probe, FaceId other, const Foot& foot) {
+    const auto pair = meeting_point(bending_of(probe.face).surface(), bending_of(other).surface(), {probe.uv, foot.uv},
+                                    contact(probe, other), probe.size);
+    if (!pair) return false;
+    const TrimmedDomain& here = *scene_.input.domains[probe.face.value()];
+    const TrimmedDomain& there = *scene_.input.domains[other.value()];
+    return here.inside(here.lifted(pair->one)) && there.inside(there.lifted(pair->two));
   }
 
   /// The closest point of a face's surface, if it is on the trimmed face or off it by less than the gap explains.
@@ -321,11 +332,15 @@ class GapSearch {
     return std::pair{probe, foot};
   }
 
-  bool is_gap(const Probe& probe, FaceId other, const Foot& foot) {
+  /// Sheets this close are meant to touch.
+  double contact(const Probe& probe, FaceId other) const {
     const Model& model = scene_.input.model;
     const double own = probe.face.valid() ? model.faces[probe.face].tolerance : model.edges[probe.edge].tolerance;
-    const double contact = std::max(2 * (own + model.faces[other].tolerance), kContact * model.diagonal());
-    if (foot.gap <= contact + 64 * kGrid) return false;
+    return std::max(2 * (own + model.faces[other].tolerance), kContact * model.diagonal()) + 64 * kGrid;
+  }
+
+  bool is_gap(const Probe& probe, FaceId other, const Foot& foot) {
+    if (foot.gap <= contact(probe, other)) return false;
     const Vec3 across = (1 / foot.gap) * (foot.point - probe.point);
     if (std::abs(dot(across, probe.axis)) < kFacing) return false;
     const Vec3 normal = bending_of(other).surface().normal(foot.uv);
