@@ -11,6 +11,7 @@
 #include <numbers>
 
 #include "boundary/curve_mesh.h"
+#include "boundary/untangle.h"
 #include "planar/segment_grid.h"
 
 namespace curvetet {
@@ -22,7 +23,8 @@ constexpr int kUseSamples = 16;        ///< per use, for the chart
 constexpr int kArcSamples = 5;         ///< inside of a segment, for the region between chord and arc
 constexpr double kChartExtent = 0.9;   ///< the larger extent of the domain in the chart
 constexpr double kLargestRatio = 1e5;  ///< of the extents of the domain in the chart
-constexpr double kStraight = 1e-7;     ///< sagitta over length below which splitting a segment changes nothing
+constexpr int kUntangleRounds = 16;
+constexpr double kStraight = 1e-7;  ///< sagitta over length below which splitting a segment changes nothing
 
 /// All uses of a face in the numbering of BoundaryMesh::uses.
 std::vector<const EdgeUse*> all_uses(const ModelFace& face) {
@@ -146,6 +148,11 @@ class FaceBuilder {
       if (!round.split.empty()) return round;
     }
     round.faults = mesh.build(input);
+    const auto tolerance = [this](std::int32_t use) { return use_tolerance(*uses_[static_cast<std::size_t>(use)]); };
+    for (int k = 0; k < kUntangleRounds && !round.faults.empty(); ++k) {
+      if (!untangle(round.faults, *face_.surface, chart_, tolerance, round.input)) break;
+      round.faults = mesh.build(input);
+    }
     round.built = round.faults.empty();
     for (const LoopFault& fault : round.faults) request(fault, round.split);
     return round;
