@@ -196,7 +196,7 @@ std::vector<Offence> find_offences(const Model& model, const BoundaryMesh& mesh)
 
 std::string describe(const Offence& offence, const Model& model) {
   std::string at = " on face " + std::to_string(model.faces[offence.face].label.cad_id) + ", vertices " +
-                         std::to_string(offence.a.value()) + " " + std::to_string(offence.b.value());
+                   std::to_string(offence.a.value()) + " " + std::to_string(offence.b.value());
   switch (offence.kind) {
     case Offence::Kind::self_edge:
       return "edge from a vertex to itself" + at;

@@ -17,14 +17,16 @@ namespace curvetet {
 namespace {
 
 Error open_shell(const CadBody& body, const std::string& source, const std::vector<TopoDS_Edge>& edges) {
-  Error error{ErrorCode::open_shell, source + " is not closed: " + std::to_string(edges.size()) + " free edges"};
+  const std::string why = edges.empty() ? "its faces close around no volume, or cannot be turned to face outward"
+                                        : std::to_string(edges.size()) + " free edges";
+  Error error{ErrorCode::open_shell, source + " is not closed: " + why};
   error.hint = "close the gaps in the CAD system, or export a solid instead of surfaces";
   if (edges.empty()) return error;
   const TopTools_IndexedMapOfShape map = sub_shapes(body.shape, TopAbs_EDGE);
   for (const TopoDS_Edge& edge : edges) {
     const int index = map.FindIndex(edge);
-    if (index != 0)
-      error.entities.push_back("edge " + std::to_string(body.edges[static_cast<std::size_t>(index - 1)].cad_id));
+    if (index == 0) continue;
+    error.entities.push_back("edge " + std::to_string(body.edges[static_cast<std::size_t>(index - 1)].cad_id));
     if (error.entities.size() == 20) break;
   }
   Standard_Real low = 0, high = 0;
