@@ -147,6 +147,7 @@ class Corpus:
         row["exit"] = code
         row["counts"] = document.get("counts", {})
         row["rounds"] = document.get("rounds")
+        row.update(fineness(document))
         if code != 0 or not mesh.is_file():
             row["cause"] = describe_failure("mesh", code, document, err)
         else:
@@ -197,6 +198,22 @@ class Corpus:
         mesh.unlink(missing_ok=True)
 
 
+def fineness(document):
+    """What the report says of fineness: triangles over those that area and size ask for, faces with over three times as
+    many and no reason, points added by recovery over the first surface points."""
+    faces, initial = document.get("faces", []), document.get("counts", {}).get("initial_surface_points", 0)
+    asked = sum(face.get("triangles_asked") or 0 for face in faces)
+    if not asked or not initial:
+        return {}
+    explained = {reduction["face"] for reduction in document.get("reductions", [])}
+    recovery = document["recovery"]
+    added = recovery["edge_splits"] + recovery["stage_one_points"] + recovery["stage_two_points"]
+    return {"over_asked": sum(face["triangles"] for face in faces) / asked,
+            "unexplained_faces": sum(face["triangles"] > 3 * face["triangles_asked"] and face["face"] not in explained
+                                     for face in faces),
+            "added_share": added / initial}
+
+
 def describe_failure(what, code, document, err):
     """One line: who failed and how, with the code of the first error where there is one."""
     if code is None:
@@ -232,6 +249,23 @@ def print_row(row):
     print("  ".join(columns), f" {row['body']}", f" {row['cause']}" if row["cause"] else "", flush=True)
 
 
+def quantile(values, share):
+    ordered = sorted(values)
+    return ordered[min(len(ordered) - 1, int(share * len(ordered)))]
+
+
+def summarize_fineness(rows):
+    rows = [row for row in rows if row["status"] == "valid" and "added_share" in row]
+    if not rows:
+        return
+    added, over = [row["added_share"] for row in rows], [row["over_asked"] for row in rows]
+    print(f"points added by recovery over the first surface points: median {quantile(added, 0.5):.1%}, "
+          f"95 % of runs at most {quantile(added, 0.95):.1%}")
+    print(f"boundary triangles over those that area and size ask for: median {quantile(over, 0.5):.2f}; more than 3: "
+          f"{sum(x > 3 for x in over)} runs, of which with a face that has no reason in the report: "
+          f"{sum(row['over_asked'] > 3 and row['unexplained_faces'] > 0 for row in rows)}")
+
+
 def summarize(rows, judged):
     total, valid = len(rows), sum(row["status"] == "valid" for row in rows)
     print(f"\nvalid {valid} of {total} ({100 * valid / max(total, 1):.1f} %)"
@@ -254,6 +288,7 @@ def summarize(rows, judged):
         ratios = sorted(row["triangles"] / row["gmsh"]["triangles"] for row in both)
         print(f"boundary triangles over gmsh's where both are valid ({len(both)}): median "
               f"{ratios[len(ratios) // 2]:.2f}, from {ratios[0]:.2f} to {ratios[-1]:.2f}")
+    summarize_fineness(rows)
     return valid == total
 
 

@@ -23,6 +23,8 @@ struct FaceReport {
   std::size_t triangles_parametric = 0;  ///< in t_3d when the face was recovered
   std::size_t triangles = 0;             ///< in T_Γ
   std::size_t coincide = 0;              ///< of T_Γ that are also in t_3d
+  double area = 0;                       ///< of T_Γ
+  double triangles_asked = 0;            ///< equilateral ones of the size asked that have that area
   std::size_t initial_points = 0, points_edge_recovery = 0, points_stage_one = 0, points_stage_two = 0;
   std::uint64_t hash_locked = 0, hash_final = 0;
   std::size_t relocks = 0, unlocks = 0, flips_without_points = 0, steiner = 0;
@@ -36,7 +38,7 @@ struct SolidReport {
   double volume = 0, cad_volume = 0;
 };
 
-/// Where the size had to be smaller than asked.
+/// Where the size had to be smaller than asked. Reason "shape": the outline and bending of the face needed it.
 struct ReductionReport {
   std::uint32_t face = 0, other = 0;  ///< cad ids; other is 0 where there is none
   std::string reason;

@@ -114,6 +114,7 @@ class Run {
     clock_.start("validation", 0.92);
     BodyMesh& body = *body_.mesh;
     report_body(report_, model_, settings_, body_, locked_hashes(*body.tets, model_.faces.size()));
+    report_fineness(report_, model_, settings_, sizes_, body);
     Mesh mesh = assemble(*body.conjoint, settings_);
     const ValidationReport validation = validate(mesh, &model_, settings_.unit_scale, context_);
     report_mesh(report_, mesh, validation);

@@ -52,6 +52,8 @@ Json face_json(const FaceReport& face) {
           {"triangles_parametric", face.triangles_parametric},
           {"triangles", face.triangles},
           {"coincide", face.coincide},
+          {"area", number(face.area)},
+          {"triangles_asked", number(face.triangles_asked)},
           {"points",
            {{"initial", face.initial_points},
             {"edge_recovery", face.points_edge_recovery},

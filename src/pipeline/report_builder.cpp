@@ -2,11 +2,18 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cmath>
+#include <set>
+
 #include "pipeline/assemble.h"
 
 namespace curvetet {
 
 namespace {
+
+/// Triangles over those asked for above which a face counts as finer than asked: two rows across a strip come to that.
+constexpr double kFine = 2;
 
 const char* reason_name(SizeReason reason) {
   switch (reason) {
@@ -38,6 +45,24 @@ std::size_t count_origin(const BodyMesh& body, FaceId face, Origin origin) {
   for (std::size_t n = 0; n < mesh.node_count(); ++n)
     if (mesh.triangle_at(NodeId(n)).valid() && body.vertices.origin(mesh.node(NodeId(n)).vertex) == origin) ++count;
   return count;
+}
+
+struct FaceExtent {
+  double area = 0;
+  Vec3 place;  ///< of a vertex
+};
+
+FaceExtent extent_of(const BodyMesh& body, FaceId face) {
+  FaceExtent extent;
+  const FaceMesh& mesh = body.boundary.faces[face];
+  for (std::size_t t = 0; t < mesh.triangle_slots(); ++t) {
+    if (!mesh.triangle(TriangleId(t)).alive()) continue;
+    const std::array<VertexId, 3> v = mesh.vertices(TriangleId(t));
+    const Vec3 a = body.vertices.position(v[0]);
+    extent.place = a;
+    extent.area += 0.5 * norm(cross(body.vertices.position(v[1]) - a, body.vertices.position(v[2]) - a));
+  }
+  return extent;
 }
 
 FaceReport face_report(const Model& model, const BodyMesh& body, FaceId face, std::uint64_t hash_final) {
@@ -114,6 +139,27 @@ void report_reductions(Report& report, const Model& model, const Settings& setti
     const Vec3 p = out_point(r.where, model, settings);
     out.where = {p.x, p.y, p.z};
     report.reductions.push_back(out);
+  }
+}
+
+void report_fineness(Report& report, const Model& model, const Settings& settings, const SizeField& sizes,
+                     const BodyMesh& mesh) {
+  std::set<std::uint32_t> explained;
+  for (const ReductionReport& r : report.reductions) explained.insert(r.face);
+  const double scale = model.frame.length_to_cad(1) * settings.unit_scale;
+  for (std::size_t f = 0; f < model.faces.size(); ++f) {
+    const FaceId face(f);
+    FaceReport& r = report.faces[f];
+    const FaceExtent extent = extent_of(mesh, face);
+    const double size = std::min(sizes.largest(), sizes.face_limit(face));
+    const double of_one = std::sqrt(3.0) / 4 * size * size;
+    r.area = extent.area * scale * scale;
+    r.triangles_asked = extent.area / of_one;
+    const auto triangles = static_cast<double>(r.triangles);
+    if (triangles <= kFine * r.triangles_asked || explained.contains(r.cad_id)) continue;
+    const Vec3 p = out_point(extent.place, model, settings);
+    report.reductions.push_back(
+        {r.cad_id, 0, "shape", size * scale * std::sqrt(r.triangles_asked / triangles), 0, {p.x, p.y, p.z}});
   }
 }
 

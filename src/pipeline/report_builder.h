@@ -12,6 +12,11 @@ void report_input(Report& report, const Model& model, const Settings& settings, 
 /// Certificates, solids, rounds. `hash_final`: of the locked facets of the finished mesh, by face.
 void report_body(Report& report, const Model& model, const Settings& settings, const BodyMesherResult& body,
                  const IndexedVector<FaceId, std::uint64_t>& hash_final);
+/// Area of each face and the triangles that its size asks for; a face that has more without a reduction gets one with
+/// the reason "shape": its outline and bending, not the size field, asked for them. After report_body and
+/// report_reductions.
+void report_fineness(Report& report, const Model& model, const Settings& settings, const SizeField& sizes,
+                     const BodyMesh& mesh);
 void report_reductions(Report& report, const Model& model, const Settings& settings, const SizeField& sizes);
 void report_mesh(Report& report, const Mesh& mesh, const ValidationReport& validation);
 /// A failure of recovery as an error in the user's terms.
