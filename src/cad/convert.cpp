@@ -23,6 +23,7 @@
 
 #include "cad/fit.h"
 #include "cad/guard.h"
+#include "cad/join_vertices.h"
 #include "cad/loops.h"
 #include "cad/occt_geometry.h"
 #include "geometry/bounds.h"
@@ -35,6 +36,8 @@ constexpr double kInfinite = 1e50;
 constexpr double kLooseBox = 3;
 /// A solid whose volume over its area to the power 3/2 is less than this has none (a ball has 0.09).
 constexpr double kFlat = 1e-10;
+/// Of the body's diagonal: vertices farther apart are never joined, whatever their tolerances say.
+constexpr double kLargestJoin = 1e-4;
 constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
 
 /// A face as one shell of a solid uses it.
@@ -69,6 +72,8 @@ class Converter {
     if (const auto error = find_box()) return *error;
     if (const auto error = collect_shells()) return *error;
     mark_used();
+    joined_ = join_vertices(vertices_, edges_, kLargestJoin * loose_box_.diagonal());
+    note_joined();
     make_parts(Frame::of(loose_box_));
     if (loose_box_.diagonal() > kLooseBox * model_.frame.length_to_cad(model_.box.diagonal())) {
       Box3 box;
@@ -239,11 +244,25 @@ class Converter {
     for (int v = 1; v <= vertices_.Extent(); ++v) {
       const std::size_t index = static_cast<std::size_t>(v);
       next_vertex_label_ = std::max(next_vertex_label_, body_.vertices[index - 1].cad_id);
+      const std::size_t stands_for = static_cast<std::size_t>(joined_.vertex[index]);
       if (vertex_used_[index] == 0) continue;
-      const TopoDS_Vertex& shape = TopoDS::Vertex(vertices_(v));
-      vertex_id_[index] =
-          add_vertex(body_.vertices[index - 1], model_.frame.to_working(to_vec(BRep_Tool::Pnt(shape).XYZ())),
-                     working(BRep_Tool::Tolerance(shape)));
+      if (!vertex_id_[stands_for].valid()) {
+        const TopoDS_Vertex& shape = TopoDS::Vertex(vertices_(joined_.vertex[index]));
+        vertex_id_[stands_for] =
+            add_vertex(body_.vertices[stands_for - 1], model_.frame.to_working(to_vec(BRep_Tool::Pnt(shape).XYZ())),
+                       working(joined_.tolerance[stands_for]));
+      }
+      vertex_id_[index] = vertex_id_[stands_for];
+    }
+  }
+
+  void note_joined() {
+    for (int v = 1; v <= vertices_.Extent(); ++v) {
+      const int other = joined_.vertex[static_cast<std::size_t>(v)];
+      if (other == v || vertex_used_[static_cast<std::size_t>(v)] == 0) continue;
+      notes_.push_back({entity("vertex", body_.vertices[static_cast<std::size_t>(v - 1)]),
+                        "is joined to " + entity("vertex", body_.vertices[static_cast<std::size_t>(other - 1)]) +
+                            ", within its tolerance"});
     }
   }
 
@@ -265,11 +284,12 @@ class Converter {
       const std::size_t index = static_cast<std::size_t>(e);
       next_edge_label_ = std::max(next_edge_label_, body_.edges[index - 1].cad_id);
       if (edge_used_[index] == 0) continue;
-      edge_id_[index] = add_edge(TopoDS::Edge(edges_(e).Oriented(TopAbs_FORWARD)), body_.edges[index - 1]);
+      edge_id_[index] =
+          add_edge(TopoDS::Edge(edges_(e).Oriented(TopAbs_FORWARD)), body_.edges[index - 1], joined_.point[index] != 0);
     }
   }
 
-  EdgeId add_edge(const TopoDS_Edge& shape, const Label& label) {
+  EdgeId add_edge(const TopoDS_Edge& shape, const Label& label, bool point) {
     ModelEdge edge;
     edge.label = label;
     edge.tolerance = working(BRep_Tool::Tolerance(shape));
@@ -285,7 +305,7 @@ class Converter {
     edge.end = vertex_of(end);
     if (!edge.degenerate) edge.curve = make_curve(curve, model_.frame);
     complete_ends(edge);
-    if (!edge.degenerate && shrunk_to_point(edge)) {
+    if (!edge.degenerate && (point || shrunk_to_point(edge))) {
       note(entity("edge", label), "is shorter than its tolerance and taken as a point");
       edge.degenerate = true;
       edge.curve = nullptr;
@@ -487,6 +507,7 @@ class Converter {
   std::vector<CadVertexId> vertex_id_;
   std::uint32_t next_vertex_label_ = 0, next_edge_label_ = 0;
   std::size_t ignored_ = 0, shell_count_ = 0;
+  JoinedVertices joined_;
   Box3 loose_box_;
   Model model_;
 };

@@ -10,6 +10,7 @@
 #include "cad/convert.h"
 #include "cad/guard.h"
 #include "cad/occt_geometry.h"
+#include "cad/overlap.h"
 #include "cad/sew.h"
 #include "geometry/check.h"
 
@@ -134,6 +135,7 @@ Result<Model> heal_and_convert(CadBody& body, const std::string& source) {
     if (!best.model) return best.model.error();
     if (best.bad >= kSerious) return fault_error(best, source);
     body = std::move(best.body);
+    if (const auto error = find_overlap(body, source)) return *error;
     for (const ModelFault& fault : best.faults) {
       const HealingNote note{fault.entity, fault.what + " (left as it is)"};
       body.notes.push_back(note);

@@ -27,6 +27,7 @@ struct RawUse {
   ParameterMap map;
   Vec2 begin, end, middle;  ///< in the direction of the loop
   CadVertexId from, to;
+  bool point = false;  ///< an edge with a curve that is taken as a point
   Vec2 shift{};
 };
 
@@ -42,6 +43,7 @@ class Tracer {
       if (wire.Value().ShapeType() != TopAbs_WIRE) continue;
       collect(wire.Value());
       measure();
+      drop_points();
       take_slits();
       while (!uses_.empty()) trace_one();
     }
@@ -73,6 +75,7 @@ class Tracer {
     raw.from = raw.use.reversed ? model_edge.end : model_edge.start;
     raw.to = raw.use.reversed ? model_edge.start : model_edge.end;
     Standard_Real first = 0, last = 0;
+    raw.point = model_edge.degenerate && !BRep_Tool::Degenerated(edge);
     raw.curve = BRep_Tool::CurveOnSurface(edge, face_, first, last);
     if (raw.curve.IsNull()) return raw;
     const double length = model_edge.high - model_edge.low;
@@ -110,6 +113,14 @@ class Tracer {
 
   double relative_distance(Vec2 a, Vec2 b) const {
     return std::hypot((a.x - b.x) / extent_.x, (a.y - b.y) / extent_.y);
+  }
+
+  /// Edges that are taken as points are no poles: their neighbours meet without them. One that is a step in (u,v), or
+  /// all that a wire has, stays.
+  void drop_points() {
+    const auto dropped = [&](const RawUse& raw) { return raw.point && relative_distance(raw.begin, raw.end) < 1e-2; };
+    if (std::all_of(uses_.begin(), uses_.end(), dropped)) return;
+    uses_.erase(std::remove_if(uses_.begin(), uses_.end(), dropped), uses_.end());
   }
 
   /// Finds the edges used twice: seams, whose two parameter curves lie apart, and slits, where they coincide.

@@ -166,9 +166,13 @@ struct Seam {
   std::vector<TopoDS_Edge> open_edges;
 };
 
-Seam sew_with(const CadBody& body, double tolerance) {
+/// How many faces sewing may join along an edge.
+enum class FacesAtEdge { two, any };
+
+Seam sew_with(const CadBody& body, double tolerance, FacesAtEdge faces_at_edge) {
   Seam seam;
   seam.sewing = new BRepBuilderAPI_Sewing(tolerance);
+  seam.sewing->SetNonManifoldMode(faces_at_edge == FacesAtEdge::any);
   const TopTools_IndexedMapOfShape faces = sub_shapes(body.shape, TopAbs_FACE);
   for (int i = 1; i <= faces.Extent(); ++i) seam.sewing->Add(faces(i));
   seam.sewing->Perform();
@@ -216,14 +220,20 @@ std::vector<TopoDS_Edge> free_edges(const TopoDS_Shape& shape) {
 
 bool sew(CadBody& body, std::vector<TopoDS_Edge>& left_open) {
   const double diagonal = diagonal_of(body.shape);
+  const auto complete = [](const Seam& seam) { return !seam.closed.empty() && seam.open_shells == 0; };
   Seam best;
   for (const double relative : {1e-6, 1e-5, 1e-4}) {
-    Seam next = sew_with(body, relative * diagonal);
+    Seam next = sew_with(body, relative * diagonal, FacesAtEdge::two);
     const bool first = best.sewing.IsNull();
     if (first || next.open_edges.size() < best.open_edges.size() || (best.closed.empty() && !next.closed.empty())) {
       best = std::move(next);
     }
-    if (!best.closed.empty() && best.open_shells == 0) break;
+    if (complete(best)) break;
+    // Where a body touches itself along an edge, four faces meet, and in pairs they may be joined the wrong way.
+    next = sew_with(body, relative * diagonal, FacesAtEdge::any);
+    if (!complete(next)) continue;
+    best = std::move(next);
+    break;
   }
   left_open = best.open_edges;
   if (best.closed.empty()) return false;

@@ -1,0 +1,22 @@
+// Vertices that the CAD's own tolerances cannot tell apart. Inside cad only.
+#pragma once
+
+#include <TopTools_IndexedMapOfShape.hxx>
+#include <vector>
+
+namespace curvetet {
+
+/// Arrays by number in the maps, from 1.
+struct JoinedVertices {
+  std::vector<int> vertex;        ///< the vertex that stands for each one: itself, where nothing was joined
+  std::vector<double> tolerance;  ///< of each vertex, the distance to those it stands for included
+  std::vector<char> point;        ///< per edge: it lies within the tolerance of its two ends, which are one vertex now
+};
+
+/// Joins the two ends of a degenerate edge, which is one point by definition, and those of an edge that lies wholly
+/// within the tolerance of its ends. The vertex with the tightest tolerance stands for all, and lies within the own
+/// tolerance of each. No two that are farther apart than `largest` are joined.
+JoinedVertices join_vertices(const TopTools_IndexedMapOfShape& vertices, const TopTools_IndexedMapOfShape& edges,
+                             double largest);
+
+}  // namespace curvetet

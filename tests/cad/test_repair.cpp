@@ -1,0 +1,197 @@
+// Faults that real files have: vertices that are one place, faces that meet in fours, solids that overlap.
+#include <gtest/gtest.h>
+
+#include <BRepBuilderAPI_MakeEdge.hxx>
+#include <BRepBuilderAPI_MakeFace.hxx>
+#include <BRepBuilderAPI_MakeVertex.hxx>
+#include <BRepBuilderAPI_MakeWire.hxx>
+#include <BRepPrimAPI_MakeBox.hxx>
+#include <BRepPrimAPI_MakeSphere.hxx>
+#include <BRep_Builder.hxx>
+#include <TopoDS.hxx>
+#include <TopoDS_Compound.hxx>
+#include <TopoDS_Edge.hxx>
+#include <TopoDS_Face.hxx>
+#include <TopoDS_Shell.hxx>
+#include <TopoDS_Solid.hxx>
+#include <TopoDS_Vertex.hxx>
+#include <TopoDS_Wire.hxx>
+#include <algorithm>
+#include <array>
+#include <map>
+#include <vector>
+
+#include "cad/shape.h"
+#include "shapes.h"
+
+namespace curvetet {
+namespace {
+
+Result<Model> convert(const TopoDS_Shape& shape) {
+  Context context;
+  return model_from_shape(shape, ShapeOptions{}, context);
+}
+
+TopoDS_Compound compound_of(const std::vector<TopoDS_Shape>& shapes) {
+  TopoDS_Compound compound;
+  BRep_Builder builder;
+  builder.MakeCompound(compound);
+  for (const TopoDS_Shape& shape : shapes) builder.Add(compound, shape);
+  return compound;
+}
+
+/// Flat faces over shared vertices and edges, each listed counterclockwise as seen from outside.
+class Polyhedron {
+ public:
+  explicit Polyhedron(const std::vector<gp_Pnt>& points) {
+    for (const gp_Pnt& p : points) vertices_.push_back(BRepBuilderAPI_MakeVertex(p).Vertex());
+  }
+
+  /// Before any face.
+  void set_tolerance(std::size_t vertex, double tolerance) {
+    BRep_Builder().UpdateVertex(vertices_[vertex], tolerance);
+  }
+
+  void add_face(const std::vector<std::size_t>& corners) {
+    // MakeWire would join the vertices itself.
+    TopoDS_Wire wire;
+    BRep_Builder builder;
+    builder.MakeWire(wire);
+    for (std::size_t i = 0; i < corners.size(); ++i) {
+      builder.Add(wire, edge(corners[i], corners[(i + 1) % corners.size()]));
+    }
+    wire.Closed(true);
+    faces_.push_back(BRepBuilderAPI_MakeFace(wire, true).Face());
+  }
+
+  TopoDS_Solid solid() const {
+    TopoDS_Shell shell;
+    TopoDS_Solid solid;
+    BRep_Builder builder;
+    builder.MakeShell(shell);
+    for (const TopoDS_Shape& face : faces_) builder.Add(shell, face);
+    builder.MakeSolid(solid);
+    builder.Add(solid, shell);
+    return solid;
+  }
+
+ private:
+  TopoDS_Edge edge(std::size_t a, std::size_t b) {
+    auto& known = edges_[std::minmax(a, b)];
+    if (known.IsNull()) {
+      known = BRepBuilderAPI_MakeEdge(vertices_[std::min(a, b)], vertices_[std::max(a, b)]).Edge();
+    }
+    return a < b ? known : TopoDS::Edge(known.Reversed());
+  }
+
+  std::vector<TopoDS_Vertex> vertices_;
+  std::map<std::pair<std::size_t, std::size_t>, TopoDS_Edge> edges_;
+  std::vector<TopoDS_Shape> faces_;
+};
+
+constexpr double kTiny = 2e-5;
+
+/// A unit cube that has a tiny edge in the middle of its upper front edge.
+TopoDS_Solid cube_with_tiny_edge(double tolerance) {
+  Polyhedron cube({{0, 0, 0},
+                   {1, 0, 0},
+                   {1, 1, 0},
+                   {0, 1, 0},
+                   {0, 0, 1},
+                   {1, 0, 1},
+                   {1, 1, 1},
+                   {0, 1, 1},
+                   {0.5, 0, 1},
+                   {0.5 + kTiny, 0, 1}});
+  cube.set_tolerance(9, tolerance);
+  cube.add_face({3, 2, 1, 0});
+  cube.add_face({4, 8, 9, 5, 6, 7});
+  cube.add_face({0, 1, 5, 9, 8, 4});
+  cube.add_face({1, 2, 6, 5});
+  cube.add_face({2, 3, 7, 6});
+  cube.add_face({3, 0, 4, 7});
+  return cube.solid();
+}
+
+std::size_t used_edges(const Model& model) {
+  return static_cast<std::size_t>(
+      std::count_if(model.edges.begin(), model.edges.end(), [](const ModelEdge& edge) { return !edge.faces.empty(); }));
+}
+
+TEST(Repair, AnEdgeWithinTheToleranceOfItsEndsIsAPoint) {
+  const Result<Model> model = convert(cube_with_tiny_edge(2 * kTiny));
+  ASSERT_TRUE(model) << model.error().message;
+  EXPECT_EQ(model.value().vertices.size(), 9U);
+  EXPECT_EQ(used_edges(model.value()), 13U);
+  EXPECT_FALSE(model.value().healing.empty());
+  test::expect_sound(model.value(), "cube with a tiny edge");
+}
+
+TEST(Repair, AnEdgeBeyondTheToleranceOfItsEndsStays) {
+  const Result<Model> model = convert(cube_with_tiny_edge(0.5 * kTiny));
+  ASSERT_TRUE(model) << model.error().message;
+  EXPECT_EQ(model.value().vertices.size(), 10U);
+  EXPECT_EQ(used_edges(model.value()), 14U);
+  test::expect_sound(model.value(), "cube with a short edge");
+}
+
+/// The loose faces of a bent bar whose two ends touch along an edge: unit cubes around one that is left out.
+TopoDS_Compound bar_that_touches_itself() {
+  std::vector<TopoDS_Shape> faces;
+  const auto filled = [](int x, int y) {
+    const bool hole = x == 1 && y == 1, corner = x == 2 && y == 2;
+    return x >= 0 && x < 3 && y >= 0 && y < 3 && !hole && !corner;
+  };
+  const auto add = [&](const std::array<gp_Pnt, 4>& p) {
+    BRepBuilderAPI_MakeWire wire;
+    for (std::size_t i = 0; i < 4; ++i) wire.Add(BRepBuilderAPI_MakeEdge(p[i], p[(i + 1) % 4]).Edge());
+    faces.push_back(BRepBuilderAPI_MakeFace(wire.Wire(), true).Face());
+  };
+  for (int x = 0; x < 3; ++x) {
+    for (int y = 0; y < 3; ++y) {
+      if (!filled(x, y)) continue;
+      const double a = x, b = x + 1, c = y, d = y + 1;
+      add({gp_Pnt(a, c, 0), gp_Pnt(a, d, 0), gp_Pnt(b, d, 0), gp_Pnt(b, c, 0)});
+      add({gp_Pnt(a, c, 1), gp_Pnt(b, c, 1), gp_Pnt(b, d, 1), gp_Pnt(a, d, 1)});
+      if (!filled(x, y - 1)) add({gp_Pnt(a, c, 0), gp_Pnt(b, c, 0), gp_Pnt(b, c, 1), gp_Pnt(a, c, 1)});
+      if (!filled(x, y + 1)) add({gp_Pnt(b, d, 0), gp_Pnt(a, d, 0), gp_Pnt(a, d, 1), gp_Pnt(b, d, 1)});
+      if (!filled(x - 1, y)) add({gp_Pnt(a, d, 0), gp_Pnt(a, c, 0), gp_Pnt(a, c, 1), gp_Pnt(a, d, 1)});
+      if (!filled(x + 1, y)) add({gp_Pnt(b, c, 0), gp_Pnt(b, d, 0), gp_Pnt(b, d, 1), gp_Pnt(b, c, 1)});
+    }
+  }
+  return compound_of(faces);
+}
+
+TEST(Repair, ABodyThatTouchesItselfAlongAnEdgeIsSewn) {
+  const Result<Model> model = convert(bar_that_touches_itself());
+  ASSERT_TRUE(model) << model.error().message;
+  EXPECT_EQ(model.value().solids.size(), 1U);
+  EXPECT_NEAR(test::total_volume(model.value()), 7, 1e-9);
+  test::expect_sound(model.value(), "bar that touches itself");
+}
+
+TEST(Repair, OverlappingSolidsAreRefused) {
+  const auto error_of = [](const std::vector<TopoDS_Shape>& solids) {
+    const Result<Model> model = convert(compound_of(solids));
+    return model ? Error{} : model.error();
+  };
+  const TopoDS_Shape box = BRepPrimAPI_MakeBox(4, 4, 4).Shape();
+  const std::vector<TopoDS_Shape> intruders{BRepPrimAPI_MakeBox(gp_Pnt(3, 3, 3), 4, 4, 4).Shape(),
+                                            BRepPrimAPI_MakeBox(gp_Pnt(1, 1, -1), 1, 1, 6).Shape(),
+                                            BRepPrimAPI_MakeSphere(gp_Pnt(2, 2, 2), 1).Shape()};
+  for (const TopoDS_Shape& intruder : intruders) {
+    const Error error = error_of({box, intruder});
+    EXPECT_EQ(error.code, ErrorCode::overlapping_solids) << error.message;
+    EXPECT_EQ(error.entities, (std::vector<std::string>{"solid 1", "solid 2"}));
+    ASSERT_TRUE(error.where.has_value());
+  }
+}
+
+TEST(Repair, SolidsApartAreNot) {
+  const TopoDS_Shape box = BRepPrimAPI_MakeBox(4, 4, 4).Shape();
+  EXPECT_TRUE(convert(compound_of({box, BRepPrimAPI_MakeBox(gp_Pnt(5, 3, 3), 4, 4, 4).Shape()})));
+  EXPECT_TRUE(convert(compound_of({box, BRepPrimAPI_MakeBox(gp_Pnt(4, 1, 1), 2, 2, 2).Shape()}))) << "they touch";
+}
+
+}  // namespace
+}  // namespace curvetet
