@@ -1,7 +1,7 @@
 // Curves are sampled adaptively until length, direction and size are all nearly linear between samples; the density
 // (segments per sample interval) is then summed and cut into equal shares. The turning bound enters the density itself
 // rather than as a correction afterwards, so that points stay evenly spread. Kinks (turns that no sampling resolves)
-// are left out of it: they would draw points to one spot.
+// are left out of it: they would draw points to one spot. So are turns within the edge's tolerance, which are noise.
 
 #include "boundary/curve_mesh.h"
 
@@ -17,7 +17,8 @@ namespace {
 constexpr double kTurnPerSegment = std::numbers::pi / 3;
 constexpr double kKink = std::numbers::pi / 6;  ///< a turn left at one sample after all subdivision
 constexpr double kArcOverChord = 1.4;
-constexpr double kRounding = 0.25;  ///< a share of a segment that is not worth one more
+constexpr double kToleranceSizes = 8;  ///< turning alone asks for no segment shorter than this many tolerances
+constexpr double kRounding = 0.25;     ///< a share of a segment that is not worth one more
 constexpr int kSampleDepth = 8;
 
 struct CurveSample {
@@ -108,7 +109,9 @@ class CurveSampler {
       const double turn = 0.5 * ((i == 1 ? turn_at[1] : turn_at[i - 1]) + (i + 1 == n ? turn_at[i - 1] : turn_at[i]));
       lengths_[i] = lengths_[i - 1] + length;
       turns_[i] = turns_[i - 1] + turn;
-      const double wanted = std::max(0.5 * length * (1 / a.size + 1 / b.size), turn / kTurnPerSegment);
+      const double noise = kToleranceSizes * edge_.tolerance;
+      const double turning = turn * noise > kTurnPerSegment * length ? length / noise : turn / kTurnPerSegment;
+      const double wanted = std::max(0.5 * length * (1 / a.size + 1 / b.size), turning);
       // A tiny share of the parameter keeps the map from shares to parameters invertible where the curve stands still.
       shares_[i] = shares_[i - 1] + wanted + 1e-9 * (b.t - a.t) / (edge_.high - edge_.low);
     }
@@ -141,7 +144,8 @@ class CurveSampler {
         const double chord =
             distance(edge_.curve->value(parameter_at(shares[i])), edge_.curve->value(parameter_at(shares[i - 1])));
         const bool bent = turn > 1.3 * kTurnPerSegment || arc > kArcOverChord * chord;
-        if (bent && arc > 1e-9) next.push_back(0.5 * (shares[i - 1] + shares[i]));
+        if (bent && arc > std::max(1e-9, kToleranceSizes * edge_.tolerance))
+          next.push_back(0.5 * (shares[i - 1] + shares[i]));
         next.push_back(shares[i]);
       }
       if (next.size() == shares.size()) return;

@@ -204,6 +204,19 @@ class EdgeTask {
     return false;
   }
 
+  /// Is the chord not much shorter than its arc, or the arc nowhere farther from it than the edge's tolerance? Within
+  /// that real curves double back.
+  bool is_fair(double from, double to) const {
+    const Vec3 a = curve_->value(from), along = curve_->value(to) - a;
+    if (arc_length(*curve_, from, to, kArcSamples) <= kFairChord * norm(along)) return true;
+    for (int k = 1; k < kArcSamples; ++k) {
+      const Vec3 p = curve_->value(from + (to - from) * k / kArcSamples) - a;
+      const double share = norm2(along) > 0 ? std::clamp(dot(p, along) / norm2(along), 0.0, 1.0) : 0;
+      if (norm(p - share * along) > edge_.tolerance) return false;
+    }
+    return true;
+  }
+
   void check_chain() {
     const auto check_end = [&](std::uint32_t node, CadVertexId v) {
       const ModelVertex& vertex = m_.model.vertices[v];
@@ -224,8 +237,7 @@ class EdgeTask {
         fault("edge_not_a_chain", fmt::format("runs backwards at node {} at {}", node, node_place(node)));
         return;
       }
-      const double chord = distance(curve_->value(t[i]), curve_->value(t[i + 1]));
-      if (arc_length(*curve_, t[i], t[i + 1], kArcSamples) <= kFairChord * chord) continue;
+      if (is_fair(t[i], t[i + 1])) continue;
       fault("unfair_chord",
             fmt::format("the arc after node {} is too long for its chord, at {}", node, node_place(node)));
     }

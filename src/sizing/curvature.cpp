@@ -12,6 +12,9 @@
 // Chord height c: the chord of a circle of radius R is 2 sqrt(2 R c - c^2), about sqrt(8 c / kappa). A triangle's
 // middle is further from the surface than its sides' middles are: an equilateral triangle of side h has circumradius h
 // / sqrt(3) and height kappa h^2 / 6 on a sphere, so faces use sqrt(6 c / kappa), curves sqrt(8 c / kappa).
+//
+// A curve is known up to the tolerance of its edge only. Within it curves of real CAD double back, or wriggle against
+// the surfaces they lie on; elements as small as that would be laid along the wriggles, off the faces and folded.
 
 #include "sizing/curvature.h"
 
@@ -25,6 +28,7 @@ namespace {
 constexpr double kInfinite = std::numeric_limits<double>::infinity();
 constexpr double kFaceHeightFactor = 0.75;  ///< 6 / 8: heights of triangles against those of chords
 constexpr double kConfirmed = 0.5;          ///< part of the angle that must really be turned
+constexpr double kToleranceSizes = 8;       ///< sizes that bending demands are at least this many tolerances
 constexpr double kLeastFraction = 0.1;      ///< of a size over which a turning can be measured
 
 double angle_between(Vec3 a, Vec3 b) { return std::atan2(norm(cross(a, b)), dot(a, b)); }
@@ -149,7 +153,12 @@ Demand FaceBending::demand(Vec2 uv, const SurfaceBending& at) const {
   return result;
 }
 
-Demand curve_demand(const Curve& curve, double t, double low, double high, const SizingOptions& options) {
+double bending_floor(double tolerance, double curvature) {
+  return std::max(kToleranceSizes * tolerance,
+                  tolerance * curvature < 1 ? chord_for_height(tolerance, curvature) : 0.0);
+}
+
+Demand curve_demand(const ModelEdge& edge, const Curve& curve, double t, const SizingOptions& options) {
   Demand result;
   const double curvature = curve.curvature(t);
   if (!(curvature > 0)) return result;
@@ -160,7 +169,8 @@ Demand curve_demand(const Curve& curve, double t, double low, double high, const
     const bool analytic = curve.kind() == CurveKind::circle || curve.kind() == CurveKind::ellipse;
     while (!analytic && result.size < options.size) {
       const double step = 0.5 * result.size / speed;
-      const CurveSecond one = curve.second(std::max(low, t - step)), two = curve.second(std::min(high, t + step));
+      const CurveSecond one = curve.second(std::max(edge.low, t - step)),
+                        two = curve.second(std::min(edge.high, t + step));
       const double fraction = std::min(1.0, distance(one.value, two.value) / result.size);
       const double turned = angle_between(one.dt, two.dt);
       if (fraction >= kLeastFraction && turned >= kConfirmed * fraction * std::min(angle, 1.0)) break;
@@ -169,6 +179,7 @@ Demand curve_demand(const Curve& curve, double t, double low, double high, const
   }
   if (options.chord_height > 0)
     result = smaller(result, {chord_for_height(options.chord_height, curvature), SizeReason::chord_height});
+  result.size = std::max(result.size, bending_floor(edge.tolerance, curvature));
   return result;
 }
 

@@ -52,8 +52,12 @@ class FaceBending {
   std::vector<SingularPoint> singular_;
 };
 
-/// Demand of a curve's own bending at t in [low, high].
-Demand curve_demand(const Curve& curve, double t, double low, double high, const SizingOptions& options);
+/// Size below which the bending of a curve of this tolerance means nothing: kToleranceSizes tolerances, or the chord
+/// that leaves its arc by one.
+double bending_floor(double tolerance, double curvature);
+
+/// Demand of an edge's own bending at t. `curve` is an evaluator of the edge's curve.
+Demand curve_demand(const ModelEdge& edge, const Curve& curve, double t, const SizingOptions& options);
 
 /// Largest chord of a circle of this curvature whose distance to its arc is at most `height`; infinite for a straight
 /// line.

@@ -171,7 +171,7 @@ class EdgeSampler {
 
   Wanted wanted(double t) const {
     Wanted result;
-    result.demand = curve_demand(*curve_, t, edge_.low, edge_.high, options_);
+    result.demand = curve_demand(edge_, *curve_, t, options_);
     if (!edge_.faces.empty()) result.face = edge_.faces.front();
     for (const Side& side : sides_) {
       const Vec2 uv = side.curve->value(t);

@@ -10,6 +10,7 @@
 #include "boundary/curve_mesh.h"
 #include "sizing/size_field.h"
 #include "support/bodies.h"
+#include "support/wriggle.h"
 
 namespace curvetet {
 namespace {
@@ -160,6 +161,17 @@ TEST(CurveMesh, HalfTurnsAreNeverOneSegment) {
     const std::vector<double> t = curve_parameters(edge, EdgeId(e), constant_size(model, 10));
     for (std::size_t i = 1; i < t.size(); ++i) EXPECT_LT(t[i] - t[i - 1], 0.5 * std::numbers::pi);
   }
+}
+
+TEST(CurveMesh, TurnsWithinTheToleranceAskForNoSegments) {
+  ModelEdge edge;
+  edge.curve = std::make_shared<test::Wriggle>(1e-3, 4e-3);
+  edge.high = 0.1;
+  const Model model = make_cylinder(1, 3);
+  const SizeField sizes = constant_size(model, 10);
+  EXPECT_GT(curve_parameters(edge, EdgeId(0), sizes).size(), 50U);
+  edge.tolerance = 2e-3;
+  EXPECT_LT(curve_parameters(edge, EdgeId(0), sizes).size(), 20U);
 }
 
 TEST(Front, CancelStops) {

@@ -397,5 +397,16 @@ TEST(Validate, EmptyMesh) {
   EXPECT_FALSE(validate(Mesh{}, nullptr, 1, context).valid());
 }
 
+TEST(Validate, ChordsWithinTheToleranceOfTheirEdgeAreFair) {
+  Sample s = cylinder(3);
+  for (const std::size_t i : {2U, 3U, 6U, 7U}) {
+    const double angle = (i % 2 == 0 ? 60 : 120) * std::numbers::pi / 180;
+    s.mesh.points[i] = {2 * std::cos(angle), 2 * std::sin(angle), s.mesh.points[i][2]};
+  }
+  EXPECT_NE(find(check(s, true), "unfair_chord"), nullptr);
+  for (ModelEdge& edge : s.model.edges) edge.tolerance = s.model.frame.length_to_working(3.5);
+  EXPECT_EQ(find(check(s, true), "unfair_chord"), nullptr);
+}
+
 }  // namespace
 }  // namespace curvetet

@@ -12,6 +12,7 @@
 #include "sizing/patch_model.h"
 #include "sizing/patch_tree.h"
 #include "support/bodies.h"
+#include "support/wriggle.h"
 
 namespace curvetet {
 namespace {
@@ -160,6 +161,22 @@ TEST(Bending, ChordAndHeightOfACircle) {
     EXPECT_NEAR(1 - std::sqrt(1 - std::pow(0.5 * sizing::chord_for_height(height, 1), 2)), height, 1e-9);
   EXPECT_EQ(sizing::chord_for_height(3, 1), 2);
   EXPECT_TRUE(std::isinf(sizing::chord_for_height(1, 0)));
+}
+
+TEST(Bending, WithinTheToleranceOfAnEdgeItMeansNothing) {
+  const test::Wriggle curve(1e-4, 1e-3);
+  SizingOptions options;
+  options.size = 0.1;
+  options.curvature = 12;
+  ModelEdge edge;
+  edge.high = 0.1;
+  const double t = 0.02525;  // at a crest
+  EXPECT_LT(sizing::curve_demand(edge, curve, t, options).size, 1e-3);
+  edge.tolerance = 1e-3;
+  EXPECT_GE(sizing::curve_demand(edge, curve, t, options).size, 8e-3);
+  // A bend that the tolerance does not hide keeps its demand.
+  edge.tolerance = 1e-9;
+  EXPECT_LT(sizing::curve_demand(edge, curve, t, options).size, 1e-3);
 }
 
 }  // namespace
