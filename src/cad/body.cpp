@@ -46,16 +46,21 @@ void replace_shape(CadBody& body, const TopoDS_Shape& shape,
     const std::vector<Label> old = labels_of(body, type);
     std::vector<Label> labels(static_cast<std::size_t>(after.Extent()));
     std::vector<std::string> paths(labels.size());
+    std::vector<char> taken(labels.size(), 0);
     std::uint32_t next = 0;
     for (int i = 1; i <= before.Extent(); ++i) {
       const std::size_t from = static_cast<std::size_t>(i - 1);
       next = std::max(next, old[from].cad_id);
       const TopTools_IndexedMapOfShape parts = sub_shapes(image(before(i)), type);
+      bool first = true;
       for (int k = 1; k <= parts.Extent(); ++k) {
-        const int found = after.FindIndex(parts(k));
-        if (found == 0 || labels[static_cast<std::size_t>(found - 1)].cad_id != 0) continue;
-        labels[static_cast<std::size_t>(found - 1)] = old[from];
-        if (type == TopAbs_SOLID) paths[static_cast<std::size_t>(found - 1)] = old_paths[from];
+        const auto to = static_cast<std::size_t>(after.FindIndex(parts(k))) - 1;
+        if (to >= labels.size() || taken[to] != 0) continue;
+        taken[to] = 1;
+        labels[to] = old[from];
+        if (!first) labels[to].cad_id = 0;  // an id names one part
+        first = false;
+        if (type == TopAbs_SOLID) paths[to] = old_paths[from];
       }
     }
     for (Label& label : labels) {

@@ -42,7 +42,8 @@ TopTools_IndexedMapOfShape sub_shapes(const TopoDS_Shape& shape, TopAbs_ShapeEnu
 void label_all(CadBody& body);
 
 /// Replaces the shape; `image` gives for a part of the old shape what became of it (null: removed; possibly several
-/// parts in a compound). Labels follow their parts; parts that come from nowhere get the next free ids.
+/// parts in a compound). Labels follow their parts; of several parts the first keeps the id. The others keep the name
+/// and colour and get the next free ids, as do parts that come from nowhere.
 void replace_shape(CadBody& body, const TopoDS_Shape& shape,
                    const std::function<TopoDS_Shape(const TopoDS_Shape&)>& image);
 

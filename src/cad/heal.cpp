@@ -1,13 +1,16 @@
 // Healing is asked for by evidence: the shape is converted and checked as it is, and only where the check finds a fault
 // are OpenCASCADE's repairs run, from the mildest to the strongest, keeping the result with the least faults. Running
 // the repairs on everything was rejected: on sound shapes they change tolerances and merge edges, and they are slow.
+// Last, solids that touch are made to share what they touch in.
 #include "cad/heal.h"
 
 #include <BRep_Tool.hxx>
 #include <ShapeBuild_ReShape.hxx>
 #include <ShapeFix_Shape.hxx>
 
+#include "cad/cells.h"
 #include "cad/convert.h"
+#include "cad/fuse.h"
 #include "cad/guard.h"
 #include "cad/occt_geometry.h"
 #include "cad/overlap.h"
@@ -36,19 +39,26 @@ Error open_shell(const CadBody& body, const std::string& source, const std::vect
   return error;
 }
 
+std::optional<Error> make_solids(CadBody& body, const std::string& source) {
+  CadBody sewn = body;
+  const SewingResult result = sew(sewn);
+  if (result.open_shells > 0 && result.open_edges.empty() && enclose_solids(body)) return std::nullopt;
+  if (!result.any) return open_shell(body, source, result.open_edges);
+  body = std::move(sewn);
+  return std::nullopt;
+}
+
 std::optional<Error> close_solids(CadBody& body, const std::string& source) {
   if (sub_shapes(body.shape, TopAbs_FACE).IsEmpty()) return Error{ErrorCode::no_faces, source + " holds no faces"};
+  if (body.solids.empty()) return make_solids(body, source);
   std::vector<TopoDS_Edge> open;
-  if (body.solids.empty()) {
-    if (!sew(body, open)) return open_shell(body, source, open);
-    return std::nullopt;
-  }
   const TopTools_IndexedMapOfShape solids = sub_shapes(body.shape, TopAbs_SOLID);
   for (int i = 1; i <= solids.Extent() && open.empty(); ++i) open = free_edges(solids(i));
   if (open.empty()) return std::nullopt;
   // Sewing may close it; solids that it leaves open must not vanish from the body.
   CadBody sewn = body;
-  if (sew(sewn, open) && open.empty()) body = std::move(sewn);
+  const SewingResult result = sew(sewn);
+  if (result.any && result.open_edges.empty()) body = std::move(sewn);
   return std::nullopt;
 }
 
@@ -97,6 +107,19 @@ void fix_shape(CadBody& body) {
   replace_shape(body, fix->Shape(), [&](const TopoDS_Shape& part) { return context->Apply(part); });
 }
 
+/// Imprints and merges solids that touch; the result is kept unless it is worse.
+void fuse(Attempt& best, const std::string& source) {
+  CadBody fused = best.body;
+  const Fusing outcome = fuse_touching(fused);
+  if (outcome == Fusing::failed) best.model.value().healing.push_back(fused.notes.back());
+  if (outcome != Fusing::imprinted) {
+    best.body.notes = std::move(fused.notes);
+    return;
+  }
+  Attempt next = attempt(std::move(fused), source);
+  if (next.bad < kSerious) best = std::move(next);
+}
+
 Error fault_error(const Attempt& result, const std::string& source) {
   std::vector<std::string> entities;
   const ModelFault* first = nullptr;
@@ -134,8 +157,9 @@ Result<Model> heal_and_convert(CadBody& body, const std::string& source) {
     }
     if (!best.model) return best.model.error();
     if (best.bad >= kSerious) return fault_error(best, source);
+    if (const auto error = find_overlap(best.body, source)) return *error;
+    fuse(best, source);
     body = std::move(best.body);
-    if (const auto error = find_overlap(body, source)) return *error;
     for (const ModelFault& fault : best.faults) {
       const HealingNote note{fault.entity, fault.what + " (left as it is)"};
       body.notes.push_back(note);

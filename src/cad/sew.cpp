@@ -218,7 +218,7 @@ std::vector<TopoDS_Edge> free_edges(const TopoDS_Shape& shape) {
   return found;
 }
 
-bool sew(CadBody& body, std::vector<TopoDS_Edge>& left_open) {
+SewingResult sew(CadBody& body) {
   const double diagonal = diagonal_of(body.shape);
   const auto complete = [](const Seam& seam) { return !seam.closed.empty() && seam.open_shells == 0; };
   Seam best;
@@ -235,15 +235,15 @@ bool sew(CadBody& body, std::vector<TopoDS_Edge>& left_open) {
     best = std::move(next);
     break;
   }
-  left_open = best.open_edges;
-  if (best.closed.empty()) return false;
+  SewingResult result{!best.closed.empty(), best.open_shells, best.open_edges};
+  if (!result.any) return result;
   replace_shape(body, solids_from(best.closed),
                 [&](const TopoDS_Shape& part) { return sewn_image(*best.sewing, part); });
   body.notes.push_back({"file", "faces sewn into " + std::to_string(body.solids.size()) + " solids"});
   if (best.open_shells > 0) {
     body.notes.push_back({"file", std::to_string(best.open_shells) + " shells stay open and are left out"});
   }
-  return true;
+  return result;
 }
 
 }  // namespace curvetet

@@ -4,7 +4,8 @@
 // which for a quadratic gap is 4/3 of the truth; twice that, and what the CAD's own tolerances allow, is accepted.
 //
 // Euler characteristic of a solid's boundary from its topology alone: each vertex and each edge of its loops counts
-// once, seams included and poles' degenerate edges left out; the open face between L loops in its plane counts 2 - L.
+// once, seams included and poles' degenerate edges left out; the open face between L loops in its plane counts 2 - L,
+// where loops that touch each other in a vertex are one.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -114,13 +115,31 @@ void check_faces_and_sides(const MeshOnModel& m, Findings& findings) {
   }
 }
 
+/// Loops of a face, those counted as one that share a vertex.
+int separate_loops(const Model& model, const ModelFace& face) {
+  std::map<std::uint32_t, std::size_t> first_at;  // vertex to loop
+  std::vector<std::size_t> group(face.loops.size());
+  int count = static_cast<int>(group.size());
+  for (std::size_t i = 0; i < group.size(); ++i) {
+    group[i] = i;
+    for (const EdgeUse& use : face.loops[i].uses) {
+      const std::size_t other = group[first_at.emplace(model.edges[use.edge].start.value(), i).first->second];
+      const std::size_t own = group[i];
+      if (other == own) continue;
+      std::replace(group.begin(), group.begin() + static_cast<std::ptrdiff_t>(i) + 1, own, other);
+      --count;
+    }
+  }
+  return count;
+}
+
 int euler_of_solid(const Model& model, SolidId id) {
   std::set<std::uint32_t> vertices, edges, faces;
   int euler = 0;
   for (const FaceId f : model.solids[id].faces) {
     const ModelFace& face = model.faces[f];
     if (face.front == face.back || !faces.insert(f.value()).second) continue;
-    euler += 2 - static_cast<int>(face.loops.size());
+    euler += 2 - separate_loops(model, face);
     for (const Loop& loop : face.loops) {
       for (const EdgeUse& use : loop.uses) {
         const ModelEdge& edge = model.edges[use.edge];

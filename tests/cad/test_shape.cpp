@@ -1,6 +1,7 @@
 // Shapes in memory become sound models, with the kernel's own numbers.
 #include <gtest/gtest.h>
 
+#include <BRepAlgoAPI_Cut.hxx>
 #include <BRepBuilderAPI_NurbsConvert.hxx>
 #include <BRepBuilderAPI_Sewing.hxx>
 #include <BRepBuilderAPI_Transform.hxx>
@@ -15,6 +16,7 @@
 #include <BRep_Tool.hxx>
 #include <GProp_GProps.hxx>
 #include <Geom_Surface.hxx>
+#include <ShapeCustom.hxx>
 #include <TopExp.hxx>
 #include <TopExp_Explorer.hxx>
 #include <TopTools_IndexedMapOfShape.hxx>
@@ -24,7 +26,9 @@
 #include <cmath>
 #include <numbers>
 #include <random>
+#include <set>
 
+#include "cad/cells.h"
 #include "cad/shape.h"
 #include "shapes.h"
 
@@ -227,6 +231,132 @@ TEST(Shapes, VoidsAndNestedShells) {
   ASSERT_TRUE(model) << model.error().message;
   EXPECT_EQ(model.value().solids.size(), 2U) << "a ball in a hollow ball";
   EXPECT_NEAR(test::total_volume(model.value()), 4.0 / 3 * kPi * (27 - 8 + 1), 1e-3);
+}
+
+TopoDS_Compound compound_of(std::initializer_list<TopoDS_Shape> shapes) {
+  TopoDS_Compound compound;
+  BRep_Builder builder;
+  builder.MakeCompound(compound);
+  for (const TopoDS_Shape& shape : shapes) builder.Add(compound, shape);
+  return compound;
+}
+
+std::size_t shared_faces(const Model& model) {
+  return static_cast<std::size_t>(std::count_if(model.faces.begin(), model.faces.end(), [](const ModelFace& face) {
+    return face.front.valid() && face.back.valid() && face.front != face.back;
+  }));
+}
+
+bool has_note(const Model& model, const std::string& words) {
+  return std::any_of(model.healing.begin(), model.healing.end(),
+                     [&](const HealingNote& note) { return note.what.find(words) != std::string::npos; });
+}
+
+TEST(Shapes, SolidsThatTouchShareFaces) {
+  const TopoDS_Shape below = BRepPrimAPI_MakeBox(10, 10, 10).Shape();
+  const TopoDS_Shape above = BRepPrimAPI_MakeBox(gp_Pnt(2, 2, 10), 6, 6, 5).Shape();
+  const Result<Model> result = convert(compound_of({below, above}));
+  ASSERT_TRUE(result) << result.error().message;
+  const Model& model = result.value();
+  test::expect_sound(model, "box on a box");
+  EXPECT_EQ(model.solids.size(), 2U);
+  EXPECT_EQ(model.faces.size(), 12U);
+  EXPECT_EQ(shared_faces(model), 1U);
+  EXPECT_NEAR(test::total_volume(model), 1180, 1e-9);
+  std::set<std::uint32_t> faces, edges;
+  for (const ModelFace& face : model.faces) faces.insert(face.label.cad_id);
+  for (const ModelEdge& edge : model.edges) edges.insert(edge.label.cad_id);
+  EXPECT_EQ(faces.size(), model.faces.size()) << "an id names one face";
+  EXPECT_EQ(edges.size(), model.edges.size()) << "an id names one edge";
+  EXPECT_TRUE(has_note(model, "coincides with face"));
+  EXPECT_TRUE(has_note(model, "is split in 2"));
+}
+
+/// As some exporters write cylinders; their seams do not match either.
+TEST(Shapes, SolidsThatTouchInSweptCylindersShareThem) {
+  const gp_Ax2 axis(gp_Pnt(-5, 0, 0), gp_Dir(1, 0, 0), gp_Dir(0, 1, 0));
+  const gp_Ax2 turned(gp_Pnt(-5, 0, 0), gp_Dir(1, 0, 0), gp_Dir(0, 0, 1));
+  const TopoDS_Shape rod = BRepPrimAPI_MakeCylinder(axis, 1, 10).Shape();
+  const TopoDS_Shape bore = BRepPrimAPI_MakeCylinder(turned, 1, 10).Shape();
+  const TopoDS_Shape nut = BRepAlgoAPI_Cut(BRepPrimAPI_MakeBox(gp_Pnt(0, -2, -2), 1, 4, 4).Shape(), bore).Shape();
+  const Result<Model> result =
+      convert(compound_of({ShapeCustom::ConvertToRevolution(rod), ShapeCustom::ConvertToRevolution(nut)}));
+  ASSERT_TRUE(result) << result.error().message;
+  const Model& model = result.value();
+  test::expect_sound(model, "rod in a nut");
+  ASSERT_EQ(model.solids.size(), 2U);
+  EXPECT_GE(shared_faces(model), 1U);
+  EXPECT_NEAR(test::total_volume(model), 10 * kPi + 16 - kPi, 1e-3);
+  double shared = 0;
+  for (const ModelFace& face : model.faces) shared += face.front.valid() ? face.area : 0;
+  EXPECT_NEAR(shared / std::pow(model.frame.scale, 2), 2 * kPi, 1e-3);
+}
+
+CadBody body_of(const TopoDS_Shape& shape) {
+  CadBody body;
+  body.shape = shape;
+  label_all(body);
+  return body;
+}
+
+std::size_t faces_used_twice(const TopoDS_Shape& shape) {
+  TopTools_IndexedMapOfShape faces;
+  std::size_t twice = 0;
+  for (TopExp_Explorer solid(shape, TopAbs_SOLID); solid.More(); solid.Next()) {
+    for (TopExp_Explorer face(solid.Current(), TopAbs_FACE); face.More(); face.Next()) {
+      const int known = faces.Extent();
+      twice += faces.Add(face.Current()) <= known ? 1 : 0;
+    }
+  }
+  return twice;
+}
+
+/// Four faces meet where the bores of two plates meet, and nothing says which two are of one plate.
+TEST(Shapes, LooseFacesOfSolidsThatTouch) {
+  const TopoDS_Shape bore = BRepPrimAPI_MakeCylinder(gp_Ax2(gp_Pnt(5, 5, -5), gp_Dir(0, 0, 1)), 1, 20).Shape();
+  const TopoDS_Shape below = BRepAlgoAPI_Cut(BRepPrimAPI_MakeBox(10, 10, 2).Shape(), bore).Shape();
+  const TopoDS_Shape above = BRepAlgoAPI_Cut(BRepPrimAPI_MakeBox(gp_Pnt(0, 0, 2), 10, 10, 1).Shape(), bore).Shape();
+  const TopoDS_Compound faces = loose_faces(compound_of({below, above}), 0);
+  CadBody body = body_of(faces);
+  ASSERT_TRUE(enclose_solids(body));
+  EXPECT_EQ(body.solids.size(), 2U);
+  EXPECT_EQ(body.faces.size(), 13U);
+  EXPECT_EQ(faces_used_twice(body.shape), 1U);
+  const Result<Model> result = convert(faces);
+  ASSERT_TRUE(result) << result.error().message;
+  test::expect_sound(result.value(), "loose plates");
+  EXPECT_EQ(result.value().solids.size(), 2U);
+  EXPECT_EQ(shared_faces(result.value()), 1U);
+}
+
+TEST(Shapes, AVoidBetweenSolidsThatTouchIsNoSolid) {
+  const TopoDS_Shape hollow = BRepPrimAPI_MakeBox(gp_Pnt(3, 3, 5), 4, 4, 5).Shape();
+  const TopoDS_Shape below = BRepAlgoAPI_Cut(BRepPrimAPI_MakeBox(10, 10, 10).Shape(), hollow).Shape();
+  const TopoDS_Shape lid = BRepPrimAPI_MakeBox(gp_Pnt(0, 0, 10), 10, 10, 5).Shape();
+  CadBody body = body_of(loose_faces(compound_of({below, lid}), 0));
+  ASSERT_TRUE(enclose_solids(body));
+  EXPECT_EQ(body.solids.size(), 2U);
+  EXPECT_EQ(faces_used_twice(body.shape), 1U);
+  const Result<Model> result = convert(body.shape);
+  ASSERT_TRUE(result) << result.error().message;
+  EXPECT_NEAR(test::total_volume(result.value()), 1500 - 80, 1e-6);
+}
+
+TEST(Shapes, LooseFacesWithAGapEncloseNothing) {
+  CadBody body = body_of(loose_faces(BRepPrimAPI_MakeBox(1, 2, 3).Shape(), 2));
+  EXPECT_FALSE(enclose_solids(body));
+  EXPECT_EQ(body.faces.size(), 5U) << "the body is left as it was";
+}
+
+/// By more they are refused.
+TEST(Shapes, SolidsThatOverlapByAHairAreTold) {
+  const TopoDS_Shape one = BRepPrimAPI_MakeBox(10, 10, 10).Shape();
+  const TopoDS_Shape two = BRepPrimAPI_MakeBox(gp_Pnt(5, 5, 9.999), 10, 10, 10).Shape();
+  const Result<Model> model = convert(compound_of({one, two}));
+  ASSERT_TRUE(model) << model.error().message;
+  EXPECT_EQ(model.value().solids.size(), 2U);
+  EXPECT_EQ(shared_faces(model.value()), 0U);
+  EXPECT_TRUE(has_note(model.value(), "overlaps"));
 }
 
 TEST(Shapes, WhatCannotBeMeshedIsAnError) {
