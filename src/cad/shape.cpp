@@ -1,18 +1,62 @@
+// The copy is made by writing the shape to memory and reading it again: this keeps the order of all parts, instances
+// and locations included, so that an index into the original is an index into the copy. BRepBuilderAPI_Copy loses the
+// way from a part inside a located compound to its copy.
 #include "cad/shape.h"
 
+#include <BinTools.hxx>
+#include <sstream>
+
 #include "cad/body.h"
+#include "cad/guard.h"
 #include "cad/heal.h"
 
 namespace curvetet {
 
+namespace {
+
+Result<TopoDS_Shape> copy_of(const TopoDS_Shape& shape, const std::string& name) {
+  return guarded(ErrorCode::reader_failed, "cannot copy " + name, [&]() -> Result<TopoDS_Shape> {
+    std::stringstream bytes;
+    BinTools::Write(shape, bytes, false, false, BinTools_FormatVersion_CURRENT);
+    TopoDS_Shape copy;
+    BinTools::Read(copy, bytes);
+    if (copy.IsNull()) return Error{ErrorCode::reader_failed, "cannot copy " + name};
+    return copy;
+  });
+}
+
+Status label_part(CadBody& body, const TopoDS_Shape& shape, const PartLabel& label, const std::string& name) {
+  for (const TopAbs_ShapeEnum type : kLabelled) {
+    if (label.part.IsNull() || label.part.ShapeType() != type) continue;
+    const int index = sub_shapes(shape, type).FindIndex(label.part);
+    if (index == 0) break;
+    Label& target = labels_of(body, type)[static_cast<std::size_t>(index - 1)];
+    target.name = label.name;
+    if (label.colour) target.colour = Colour{(*label.colour)[0], (*label.colour)[1], (*label.colour)[2]};
+    return Done{};
+  }
+  return Error{ErrorCode::bad_option,
+               "the part labelled '" + label.name + "' is no solid, face, edge or vertex of " + name,
+               {},
+               {},
+               "label parts as TopExp::MapShapes or TopExp_Explorer find them in the shape, with their location"};
+}
+
+}  // namespace
+
 Result<Model> model_from_shape(const TopoDS_Shape& shape, const ShapeOptions& options, Context& context) {
   if (context.should_stop()) return context.stop_error("load");
-  if (shape.IsNull()) return Error{ErrorCode::no_faces, options.name + " is a null shape"};
+  const std::string& name = options.labels.name;
+  if (shape.IsNull()) return Error{ErrorCode::no_faces, name + " is a null shape"};
+  Result<TopoDS_Shape> copy = copy_of(shape, name);
+  if (!copy) return copy.error();
   CadBody body;
-  body.shape = shape;
+  body.shape = copy.value();
   body.unit = options.unit;
   label_all(body);
-  return heal_and_convert(body, options.name);
+  for (const PartLabel& label : options.labels.parts)
+    if (const Status labelled = label_part(body, shape, label, name); !labelled) return labelled.error();
+  return heal_and_convert(body, name);
 }
 
 }  // namespace curvetet

@@ -6,17 +6,18 @@
 
 #include "base/context.h"
 #include "base/error.h"
+#include "curvetet/occt.h"
 #include "geometry/model.h"
 
 namespace curvetet {
 
 struct ShapeOptions {
-  std::string unit = "mm";     ///< of the shape's coordinates
-  std::string name = "shape";  ///< what messages call it
+  std::string unit = "mm";  ///< of the shape's coordinates
+  ShapeLabels labels;
 };
 
-/// Ids are those of TopExp::MapShapes on the shape. Repairs, where the shape needs any, run in this process; they work
-/// on copies of what they change, but may raise tolerances in the shape itself.
+/// Ids are those of TopExp::MapShapes on the shape. Repairs, where the shape needs any, run in this process, on a copy:
+/// the shape is not changed.
 Result<Model> model_from_shape(const TopoDS_Shape& shape, const ShapeOptions& options, Context& context);
 
 }  // namespace curvetet

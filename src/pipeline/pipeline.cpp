@@ -1,5 +1,7 @@
 // The stages in the order of the paper's Fig. 1 and DESIGN's list. This function reads like that list; what a stage
 // promised is checked before the next one starts.
+#include "pipeline/pipeline.h"
+
 #include <fmt/format.h>
 
 #include <chrono>
@@ -7,7 +9,6 @@
 
 #include "boundary/classify.h"
 #include "cad/load.h"
-#include "curvetet/curvetet.h"
 #include "pipeline/assemble.h"
 #include "pipeline/body_mesher.h"
 #include "pipeline/report_builder.h"
@@ -34,8 +35,8 @@ std::string file_hash(const std::string& path) {
 
 class Run {
  public:
-  Run(const Input& input, const Options& options, Context& context, Report& report)
-      : input_(input), options_(options), context_(context), report_(report), clock_(context) {}
+  Run(const Source& source, const Options& options, Context& context, Report& report)
+      : source_(source), options_(options), context_(context), report_(report), clock_(context) {}
 
   Result<Mesh> operator()() {
     const Status options = check_options(options_);
@@ -63,13 +64,10 @@ class Run {
  private:
   Status load() {
     clock_.start("load", 0);
-    LoadOptions load;
-    load.input_unit = options_.input_unit;
-    load.isolate = options_.isolate_cad;
-    auto model = load_model(input_.path, load, context_);
+    auto model = source_.load(context_);
     if (!model.ok()) return model.error();
     model_ = std::move(model.value());
-    report_.input_hash = file_hash(input_.path);
+    if (source_.hash) report_.input_hash = source_.hash();
     auto settings = resolve(options_, model_);
     if (!settings.ok()) return settings.error();
     settings_ = std::move(settings.value());
@@ -113,7 +111,7 @@ class Run {
   Result<Mesh> finish() {
     clock_.start("validation", 0.92);
     BodyMesh& body = *body_.mesh;
-    report_body(report_, model_, settings_, body_, locked_hashes(*body.tets, model_.faces.size()));
+    report_body(report_, model_, settings_, body_, locked_facets(*body.tets, model_.faces.size()));
     report_fineness(report_, model_, settings_, sizes_, body);
     Mesh mesh = assemble(*body.conjoint, settings_);
     const ValidationReport validation = validate(mesh, &model_, settings_.unit_scale, context_);
@@ -122,7 +120,7 @@ class Run {
     return mesh;
   }
 
-  const Input& input_;
+  const Source& source_;
   const Options& options_;
   Context& context_;
   Report& report_;
@@ -135,11 +133,12 @@ class Run {
 
 }  // namespace
 
-Result<MeshOutput> mesh(const Input& input, const Options& options, Context& context, Report* report_on_failure) {
+Result<MeshOutput> mesh_source(const Source& source, const Options& options, Context& context,
+                               Report* report_on_failure) {
   Report report;
   report.version = version();
-  report.input = input.path;
-  Run run(input, options, context, report);
+  report.input = source.name;
+  Run run(source, options, context, report);
   Result<Mesh> made = run();
   run.keep_times();
   if (made.ok()) return MeshOutput{std::move(made.value()), std::move(report)};
@@ -147,6 +146,20 @@ Result<MeshOutput> mesh(const Input& input, const Options& options, Context& con
   const Error error = made.error();
   if (report_on_failure != nullptr) *report_on_failure = std::move(report);
   return error;
+}
+
+Result<MeshOutput> mesh(const Input& input, const Options& options, Context& context, Report* report_on_failure) {
+  Source source;
+  source.name = input.path;
+  source.hash = [&] { return file_hash(input.path); };
+  source.load = [&](Context& while_loading) {
+    LoadOptions load;
+    load.input_unit = options.input_unit;
+    load.isolate = options.isolate_cad;
+    if (options.time_limit) load.isolate_time_limit = std::max(load.isolate_time_limit, *options.time_limit);
+    return load_model(input.path, load, while_loading);
+  };
+  return mesh_source(source, options, context, report_on_failure);
 }
 
 }  // namespace curvetet

@@ -1,4 +1,4 @@
-# Installs BUILD into WORK, builds EXAMPLE against it, and meshes a body with the result.
+# Installs BUILD into WORK, builds the EXAMPLES against it, and meshes a body with each of them.
 function(run)
   execute_process(COMMAND ${ARGN} RESULT_VARIABLE result OUTPUT_VARIABLE said ERROR_VARIABLE said)
   if(NOT result EQUAL 0)
@@ -9,9 +9,13 @@ endfunction()
 file(REMOVE_RECURSE ${WORK})
 file(MAKE_DIRECTORY ${WORK}/bodies)
 run(${CMAKE_COMMAND} --install ${BUILD} --prefix ${WORK}/prefix)
-run(${CMAKE_COMMAND} -S ${EXAMPLE} -B ${WORK}/example -DCMAKE_PREFIX_PATH=${WORK}/prefix -DCMAKE_BUILD_TYPE=Release
-  -DCMAKE_CXX_COMPILER=${COMPILER})
-run(${CMAKE_COMMAND} --build ${WORK}/example)
+foreach(example find_package mesh_shape)
+  run(${CMAKE_COMMAND} -S ${EXAMPLES}/${example} -B ${WORK}/${example} -DCMAKE_PREFIX_PATH=${WORK}/prefix
+    -DCMAKE_BUILD_TYPE=Release -DCMAKE_CXX_COMPILER=${COMPILER})
+  run(${CMAKE_COMMAND} --build ${WORK}/${example})
+endforeach()
 run(${MAKE_BODIES} ${WORK}/bodies)
-run(${WORK}/example/mesh_a_part ${WORK}/bodies/plate.step ${WORK}/plate.msh)
+run(${WORK}/find_package/mesh_a_part ${WORK}/bodies/plate.step ${WORK}/plate.msh)
 run(${WORK}/prefix/bin/curvetet check ${WORK}/plate.msh ${WORK}/bodies/plate.step)
+run(${WORK}/mesh_shape/mesh_a_shape ${WORK}/block.msh)
+run(${WORK}/prefix/bin/curvetet check ${WORK}/block.msh ${WORK}/bodies/plate.step)

@@ -1,0 +1,26 @@
+// The pipeline for shapes in memory.
+#include "cad/shape.h"
+#include "curvetet/occt.h"
+#include "pipeline/pipeline.h"
+
+namespace curvetet {
+
+Result<MeshOutput> mesh(const TopoDS_Shape& shape, const Options& options, Context& context,
+                        Report* report_on_failure) {
+  return mesh(shape, ShapeLabels{}, options, context, report_on_failure);
+}
+
+Result<MeshOutput> mesh(const TopoDS_Shape& shape, const ShapeLabels& labels, const Options& options, Context& context,
+                        Report* report_on_failure) {
+  Source source;
+  source.name = labels.name;
+  source.load = [&](Context& while_loading) {
+    ShapeOptions load;
+    if (!options.input_unit.empty()) load.unit = options.input_unit;
+    load.labels = labels;
+    return model_from_shape(shape, load, while_loading);
+  };
+  return mesh_source(source, options, context, report_on_failure);
+}
+
+}  // namespace curvetet

@@ -1,0 +1,118 @@
+// Shapes in memory are meshed as files are, keep what they are called, and stay as they were.
+#include <gtest/gtest.h>
+
+#include <BRepAlgoAPI_Cut.hxx>
+#include <BRepBuilderAPI_NurbsConvert.hxx>
+#include <BRepPrimAPI_MakeBox.hxx>
+#include <BRepPrimAPI_MakeCylinder.hxx>
+#include <BRep_Builder.hxx>
+#include <BinTools.hxx>
+#include <TopExp.hxx>
+#include <TopExp_Explorer.hxx>
+#include <TopTools_IndexedMapOfShape.hxx>
+#include <TopoDS_Compound.hxx>
+#include <filesystem>
+#include <sstream>
+
+#include "curvetet/occt.h"
+
+namespace curvetet {
+namespace {
+
+TopoDS_Shape block_with_bore() {
+  const TopoDS_Shape box = BRepPrimAPI_MakeBox(10, 20, 30).Shape();
+  const TopoDS_Shape bore = BRepPrimAPI_MakeCylinder(gp_Ax2(gp_Pnt(5, 10, -1), gp_Dir(0, 0, 1)), 3, 40).Shape();
+  return BRepAlgoAPI_Cut(box, bore).Shape();
+}
+
+TopoDS_Shape face_of(const TopoDS_Shape& shape, int id) {
+  TopTools_IndexedMapOfShape faces;
+  TopExp::MapShapes(shape, TopAbs_FACE, faces);
+  return faces(id);
+}
+
+std::string bytes_of(const TopoDS_Shape& shape) {
+  std::ostringstream out;
+  BinTools::Write(shape, out);
+  return out.str();
+}
+
+TEST(MeshOfAShape, IsTheMeshOfItsFile) {
+  const TopoDS_Shape block = block_with_bore();
+  const std::filesystem::path file = std::filesystem::temp_directory_path() / "curvetet_shape_test.bin";
+  ASSERT_TRUE(BinTools::Write(block, file.c_str()));  // text would round
+  Options options;
+  options.isolate_cad = false;
+  Context first, second;
+  const Result<MeshOutput> of_shape = mesh(block, options, first);
+  const Result<MeshOutput> of_file = mesh(Input{file.string()}, options, second);
+  std::filesystem::remove(file);
+  ASSERT_TRUE(of_shape) << of_shape.error().message;
+  ASSERT_TRUE(of_file) << of_file.error().message;
+  EXPECT_TRUE(of_shape.value().report.valid);
+  EXPECT_EQ(of_shape.value().report.mesh_hash, of_file.value().report.mesh_hash);
+  EXPECT_EQ(of_shape.value().report.input, "shape");
+}
+
+TEST(MeshOfAShape, KeepsNamesColoursAndUnit) {
+  const TopoDS_Shape block = block_with_bore();
+  ShapeLabels labels{"block", {{face_of(block, 2), "inlet", std::array<double, 3>{1, 0, 0}}}};
+  labels.parts.push_back({TopExp_Explorer(block, TopAbs_SOLID).Current(), "steel", {}});
+  Options options;
+  options.input_unit = "cm";
+  options.unit = "mm";
+  options.size = 60;
+  options.local_sizes.push_back({LocalSize::Kind::face, "inlet", 30});
+  Context context;
+  const Result<MeshOutput> made = mesh(block, labels, options, context);
+  ASSERT_TRUE(made) << made.error().message;
+  const Mesh& result = made.value().mesh;
+  ASSERT_EQ(result.faces.size(), 7U);
+  for (const Entity& face : result.faces) {
+    EXPECT_EQ(face.name, face.cad_id == 2 ? "inlet" : "face_" + std::to_string(face.cad_id));
+    EXPECT_EQ(face.colour.has_value(), face.cad_id == 2);
+  }
+  EXPECT_EQ(result.solids.at(0).name, "steel");
+  EXPECT_EQ(result.unit, "mm");
+  EXPECT_DOUBLE_EQ(result.solids[0].box[5] - result.solids[0].box[2], 300) << "30 cm";
+}
+
+/// Loose faces are sewn, which changes tolerances and merges edges: in a copy.
+TEST(MeshOfAShape, LeavesTheShapeAsItWas) {
+  TopoDS_Compound loose;
+  BRep_Builder builder;
+  builder.MakeCompound(loose);
+  const TopoDS_Shape box = BRepPrimAPI_MakeBox(1, 2, 3).Shape();
+  for (TopExp_Explorer face(box, TopAbs_FACE); face.More(); face.Next())
+    builder.Add(loose, BRepBuilderAPI_NurbsConvert(face.Current(), true).Shape());
+  const std::string before = bytes_of(loose);
+  Context context;
+  const Result<MeshOutput> made = mesh(loose, Options{}, context);
+  ASSERT_TRUE(made) << made.error().message;
+  EXPECT_FALSE(made.value().report.healing.empty());
+  EXPECT_EQ(bytes_of(loose), before);
+}
+
+TEST(MeshOfAShape, RefusesWhatItCannotMesh) {
+  const TopoDS_Shape block = block_with_bore();
+  const auto code = [](const TopoDS_Shape& shape, const ShapeLabels& labels, const Options& options) {
+    Context context;
+    Report report;
+    const Result<MeshOutput> made = mesh(shape, labels, options, context, &report);
+    if (made) return ErrorCode::internal;
+    EXPECT_EQ(report.errors.size(), 1U);
+    EXPECT_NE(made.error().message, "");
+    return made.error().code;
+  };
+  EXPECT_EQ(code(TopoDS_Shape(), {}, {}), ErrorCode::no_faces);
+  EXPECT_EQ(code(face_of(block, 1), {}, {}), ErrorCode::open_shell);
+  EXPECT_EQ(code(block, {"block", {{TopoDS_Shape(), "nothing", {}}}}, {}), ErrorCode::bad_option);
+  const TopoDS_Shape other = BRepPrimAPI_MakeBox(1, 1, 1).Shape();
+  EXPECT_EQ(code(block, {"block", {{face_of(other, 1), "stranger", {}}}}, {}), ErrorCode::bad_option);
+  Options options;
+  options.input_unit = "furlong";
+  EXPECT_EQ(code(block, {}, options), ErrorCode::bad_option);
+}
+
+}  // namespace
+}  // namespace curvetet
