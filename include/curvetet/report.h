@@ -20,14 +20,14 @@ struct StageTime {
 struct FaceReport {
   std::uint32_t cad_id = 0;
   std::string name, kind;
-  std::size_t triangles_parametric = 0;  ///< in t_3d when the face was recovered
-  std::size_t triangles = 0;             ///< in T_Γ
-  std::size_t coincide = 0;              ///< of T_Γ that are also in t_3d
+  std::size_t triangles_parametric = 0;  ///< in t_3d when T_Γ took its place
+  std::size_t triangles = 0;             ///< in T_Γ: the locked facets of the finished mesh
+  std::size_t coincide = 0;              ///< of T_Γ that t_3d had too; the march found the others
   double area = 0;                       ///< of T_Γ
   double triangles_asked = 0;            ///< equilateral ones of the size asked that have that area
   std::size_t initial_points = 0, points_edge_recovery = 0, points_stage_one = 0, points_stage_two = 0;
   std::uint64_t hash_locked = 0, hash_final = 0;
-  std::size_t relocks = 0, unlocks = 0, flips_without_points = 0, steiner = 0;
+  std::size_t relocks = 0, unlocks = 0, flips_without_points = 0;
   bool fallback = false;
 };
 
@@ -56,8 +56,11 @@ struct RecoveryCounts {
 };
 
 struct Report {
-  int schema = 1;
-  std::string version, input, input_hash, unit, mode;
+  int schema = 2;
+  std::string version, input, input_hash;
+  std::string unit;       ///< of the output
+  std::string file_unit;  ///< of the lengths in the file; empty if it does not say
+  std::string mode;
   std::vector<std::string> healing;
   std::string options_json;
   std::vector<StageTime> stages;

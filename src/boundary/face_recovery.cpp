@@ -16,15 +16,6 @@ namespace curvetet {
 
 namespace {
 
-std::uint64_t hash_keys(std::vector<FacetKey> keys) {
-  std::sort(keys.begin(), keys.end());
-  std::uint64_t hash = 0xcbf29ce484222325ULL;  // FNV-1a
-  for (const FacetKey& key : keys)
-    for (std::uint32_t value : key)
-      for (int shift = 0; shift < 32; shift += 8) hash = (hash ^ ((value >> shift) & 0xFFU)) * 0x100000001b3ULL;
-  return hash;
-}
-
 class FaceRecovery {
  public:
   FaceRecovery(Conjoint& conjoint, const FaceRecoveryOptions& options, Context& context)
@@ -34,9 +25,6 @@ class FaceRecovery {
         context_(context),
         recovered_(conjoint.model().faces.size(), false) {
     result_.faces.resize(conjoint.model().faces.size());
-    for (std::size_t f = 0; f < recovered_.size(); ++f)
-      for (const SurfaceTriangle& t : surface_triangles(conjoint.boundary().faces[FaceId(f)], FaceId(f)))
-        result_.faces[FaceId(f)].initial.insert(facet_key(t.vertices[0], t.vertices[1], t.vertices[2]));
   }
 
   Result<FaceRecoveryResult> run() {
@@ -53,7 +41,6 @@ class FaceRecovery {
         break;
       }
     }
-    for (std::size_t f = 0; f < recovered_.size(); ++f) certify(FaceId(f));
     return std::move(result_);
   }
 
@@ -86,14 +73,16 @@ class FaceRecovery {
     ++result_.faces[face].unlocks;
   }
 
-  void lock(FaceId face) {
+  void lock(FaceId face, std::size_t parametric) {
     for (const SurfaceTriangle& t : surface_triangles(conjoint_.boundary().faces[face], face)) {
       const auto f = tets_.find_facet(t.vertices[0], t.vertices[1], t.vertices[2]);
       CURVETET_CHECK(f.has_value());
       tets_.lock(*f, face);
     }
     recovered_[face] = true;
-    result_.faces[face].hash_locked = facet_hash(conjoint_.boundary().faces[face], face);
+    FaceCertificate& certificate = result_.faces[face];
+    certificate.locked = facets_of(conjoint_.boundary().faces[face], face);
+    certificate.parametric = parametric;
   }
 
   Status march_all() {
@@ -110,21 +99,11 @@ class FaceRecovery {
   }
 
   void march(FaceId face) {
-    MarchResult m = march_face(conjoint_, face);
+    const MarchResult m = march_face(conjoint_, face);
     FaceMesh& mesh = conjoint_.boundary().faces[face];
-    bool complete = m.complete;
-    if (!m.missing.empty()) {
-      std::set<FacetKey> before;
-      for (const SurfaceTriangle& t : surface_triangles(mesh, face))
-        before.insert(facet_key(t.vertices[0], t.vertices[1], t.vertices[2]));
-      if (mesh.replace(m.triangles)) {
-        for (const SurfaceTriangle& t : surface_triangles(mesh, face))
-          result_.faces[face].marched += before.count(facet_key(t.vertices[0], t.vertices[1], t.vertices[2])) ? 0U : 1U;
-      } else {
-        complete = false;
-      }
-    }
-    if (complete) lock(face);
+    const std::size_t parametric = surface_triangles(mesh, face).size();
+    const bool taken = m.missing.empty() || take_over(mesh, face, m, result_.faces[face]);
+    if (m.complete && taken) lock(face, parametric);
   }
 
   void reconnect_all() {
@@ -134,7 +113,7 @@ class FaceRecovery {
         if (recovered_[face] || context_.should_stop()) continue;
         const ReconnectResult r = reconnect_face(conjoint_, face, depth);
         result_.faces[face].reconnected += r.recovered;
-        if (r.missing.empty()) lock(face);
+        if (r.missing.empty()) lock(face, surface_triangles(conjoint_.boundary().faces[face], face).size());
       }
     }
   }
@@ -201,14 +180,6 @@ class FaceRecovery {
     failure.size = 0.5 * longest;
   }
 
-  void certify(FaceId face) {
-    FaceCertificate& c = result_.faces[face];
-    for (const SurfaceTriangle& t : surface_triangles(conjoint_.boundary().faces[face], face)) {
-      ++c.triangles;
-      c.coincide += c.initial.count(facet_key(t.vertices[0], t.vertices[1], t.vertices[2]));
-    }
-  }
-
   Conjoint& conjoint_;
   Tetrahedralization& tets_;
   const FaceRecoveryOptions& options_;
@@ -219,15 +190,16 @@ class FaceRecovery {
 
 }  // namespace
 
-std::uint64_t facet_hash(const FaceMesh& mesh, FaceId face) {
-  std::vector<FacetKey> keys;
+std::vector<FacetKey> facets_of(const FaceMesh& mesh, FaceId face) {
+  std::vector<FacetKey> facets;
   for (const SurfaceTriangle& t : surface_triangles(mesh, face))
-    keys.push_back(facet_key(t.vertices[0], t.vertices[1], t.vertices[2]));
-  return hash_keys(std::move(keys));
+    facets.push_back(facet_key(t.vertices[0], t.vertices[1], t.vertices[2]));
+  std::sort(facets.begin(), facets.end());
+  return facets;
 }
 
-IndexedVector<FaceId, std::uint64_t> locked_hashes(const Tetrahedralization& tets, std::size_t faces) {
-  IndexedVector<FaceId, std::vector<FacetKey>> keys(faces);
+IndexedVector<FaceId, std::vector<FacetKey>> locked_facets(const Tetrahedralization& tets, std::size_t faces) {
+  IndexedVector<FaceId, std::vector<FacetKey>> facets(faces);
   const TetComplex& complex = tets.complex();
   for (std::size_t t = 0; t < complex.slots(); ++t) {
     if (!complex.is_alive(TetId(t))) continue;
@@ -235,12 +207,27 @@ IndexedVector<FaceId, std::uint64_t> locked_hashes(const Tetrahedralization& tet
       const TetFacet f{TetId(t), i};
       if (!complex.is_locked(f) || complex.neighbour(f.tet, i) < f.tet) continue;
       const auto v = complex.facet_vertices(f);
-      keys[complex.locked_face(f)].push_back(facet_key(v[0], v[1], v[2]));
+      facets[complex.locked_face(f)].push_back(facet_key(v[0], v[1], v[2]));
     }
   }
-  IndexedVector<FaceId, std::uint64_t> hashes(faces);
-  for (std::size_t f = 0; f < faces; ++f) hashes[FaceId(f)] = hash_keys(std::move(keys[FaceId(f)]));
-  return hashes;
+  for (std::size_t f = 0; f < faces; ++f) std::sort(facets[FaceId(f)].begin(), facets[FaceId(f)].end());
+  return facets;
+}
+
+std::uint64_t facet_hash(const std::vector<FacetKey>& facets) {
+  std::uint64_t hash = 0xcbf29ce484222325ULL;  // FNV-1a
+  for (const FacetKey& facet : facets)
+    for (std::uint32_t value : facet)
+      for (int shift = 0; shift < 32; shift += 8) hash = (hash ^ ((value >> shift) & 0xFFU)) * 0x100000001b3ULL;
+  return hash;
+}
+
+bool take_over(FaceMesh& mesh, FaceId face, const MarchResult& march, FaceCertificate& certificate) {
+  const std::vector<FacetKey> before = facets_of(mesh, face);
+  if (!mesh.replace(march.triangles)) return false;
+  for (const FacetKey& facet : facets_of(mesh, face))
+    if (!std::binary_search(before.begin(), before.end(), facet)) certificate.marched.insert(facet);
+  return true;
 }
 
 Result<FaceRecoveryResult> recover_faces(Conjoint& conjoint, const FaceRecoveryOptions& options, Context& context) {

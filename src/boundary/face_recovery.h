@@ -19,13 +19,11 @@ namespace curvetet {
 
 /// What recovery did to one face; becomes its certificate in the report.
 struct FaceCertificate {
-  std::set<FacetKey> initial;   ///< t_3d when recovery began
-  std::size_t triangles = 0;    ///< in T_Γ
-  std::size_t coincide = 0;     ///< of them also in the t_3d recovery began with
-  std::size_t marched = 0;      ///< triangles replaced by the march
-  std::size_t reconnected = 0;  ///< facets recovered by flips, without points
-  std::size_t unlocks = 0, relocks = 0, steiner = 0;
-  std::uint64_t hash_locked = 0;
+  std::set<FacetKey> marched;    ///< facets that the march put in the place of triangles of t_3d
+  std::vector<FacetKey> locked;  ///< T_Γ when it was locked last, sorted
+  std::size_t parametric = 0;    ///< triangles of t_3d whose place T_Γ took then
+  std::size_t reconnected = 0;   ///< facets recovered by flips, without points
+  std::size_t unlocks = 0;
   bool fallback = false;
 };
 
@@ -44,9 +42,14 @@ struct FaceRecoveryResult {
 
 Result<FaceRecoveryResult> recover_faces(Conjoint& conjoint, const FaceRecoveryOptions& options, Context& context);
 
-/// Hash of the facets of a face, from its face mesh: independent of the order of triangles.
-std::uint64_t facet_hash(const FaceMesh& mesh, FaceId face);
-/// The same from the facets that are locked for each face in the tetrahedralization.
-IndexedVector<FaceId, std::uint64_t> locked_hashes(const Tetrahedralization& tets, std::size_t faces);
+/// The facets of a face's t_3d, sorted.
+std::vector<FacetKey> facets_of(const FaceMesh& mesh, FaceId face);
+/// The facets that are locked for each face in the tetrahedralization, sorted.
+IndexedVector<FaceId, std::vector<FacetKey>> locked_facets(const Tetrahedralization& tets, std::size_t faces);
+/// Of sorted facets.
+std::uint64_t facet_hash(const std::vector<FacetKey>& facets);
+/// Puts the triangles that a march found in the place of those of t_3d, and notes in the certificate which are new.
+/// False, and nothing is changed, if the face mesh refuses them.
+bool take_over(FaceMesh& mesh, FaceId face, const MarchResult& march, FaceCertificate& certificate);
 
 }  // namespace curvetet

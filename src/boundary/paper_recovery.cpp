@@ -33,7 +33,6 @@ class PaperRecovery {
     if (!edges.ok()) return edges.error();
     const Status first = paper_stage_one(conjoint_, options_.floor, out_.counts, context_);
     if (!first.ok()) return first.error();
-    for (std::size_t f = 0; f < locked_.size(); ++f) remember_initial(FaceId(f));
     for (std::size_t f = 0; f < locked_.size() && out_.recovery.failures.empty(); ++f) {
       const Status done = recover(FaceId(f));
       if (!done.ok()) return done.error();
@@ -54,15 +53,11 @@ class PaperRecovery {
     return Done{};
   }
 
-  void remember_initial(FaceId face) {
-    for (const SurfaceTriangle& t : surface_triangles(conjoint_.boundary().faces[face], face))
-      out_.recovery.faces[face].initial.insert(facet_key(t.vertices[0], t.vertices[1], t.vertices[2]));
-  }
-
   Status recover(FaceId face) {
     FaceMesh& mesh = conjoint_.boundary().faces[face];
     const std::size_t first_nodes = mesh.node_count();
     std::size_t best = 0;
+    std::size_t parametric = 0;
     int waited = 0;
     for (;;) {
       if (context_.should_stop()) return context_.stop_error("second stage of face recovery");
@@ -70,7 +65,8 @@ class PaperRecovery {
       if (!edges.ok()) return edges.error();
       if (!out_.recovery.failures.empty()) return Done{};
       const MarchResult m = march_face(conjoint_, face);
-      if (m.complete && (m.missing.empty() || mesh.replace(m.triangles))) break;
+      parametric = surface_triangles(mesh, face).size();
+      if (m.complete && (m.missing.empty() || take_over(mesh, face, m, out_.recovery.faces[face]))) break;
       waited = m.seeds > best ? 0 : waited + 1;
       best = std::max(best, m.seeds);
       const bool doubled = m.seeds == 0 && mesh.node_count() > 2 * first_nodes + 8;
@@ -80,7 +76,7 @@ class PaperRecovery {
       }
       ++out_.recovery.rounds;
     }
-    lock(face);
+    lock(face, parametric);
     return Done{};
   }
 
@@ -148,16 +144,15 @@ class PaperRecovery {
     return true;
   }
 
-  void lock(FaceId face) {
-    FaceCertificate& c = out_.recovery.faces[face];
+  void lock(FaceId face, std::size_t parametric) {
     for (const SurfaceTriangle& t : surface_triangles(conjoint_.boundary().faces[face], face)) {
       const auto f = tets_.find_facet(t.vertices[0], t.vertices[1], t.vertices[2]);
       CURVETET_CHECK(f.has_value());
       tets_.lock(*f, face);
-      ++c.triangles;
-      c.coincide += c.initial.count(facet_key(t.vertices[0], t.vertices[1], t.vertices[2]));
     }
-    c.hash_locked = facet_hash(conjoint_.boundary().faces[face], face);
+    FaceCertificate& certificate = out_.recovery.faces[face];
+    certificate.locked = facets_of(conjoint_.boundary().faces[face], face);
+    certificate.parametric = parametric;
     locked_[face] = true;
   }
 
@@ -165,8 +160,9 @@ class PaperRecovery {
     out_.recovery.faces[face].fallback = true;
     ++out_.counts.fallback_faces;
     const ReconnectResult r = reconnect_face(conjoint_, face, 6);
+    out_.recovery.faces[face].reconnected += r.recovered;
     if (r.missing.empty()) {
-      lock(face);
+      lock(face, surface_triangles(conjoint_.boundary().faces[face], face).size());
       return;
     }
     RecoveryFailure failure;

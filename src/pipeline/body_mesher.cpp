@@ -124,7 +124,7 @@ class BodyMesher {
   }
 
   static void count_initial(BodyMesh& body) {
-    for (const FaceMesh& mesh : body.boundary.faces) body.initial_points.push_back(mesh.node_count());
+    for (const FaceMesh& mesh : body.boundary.faces) body.initial_points.push_back(vertices_of(mesh).size());
     body.initial_surface_points = used_vertices(body).size();
   }
 
@@ -144,6 +144,15 @@ class BodyMesher {
 };
 
 }  // namespace
+
+std::vector<VertexId> vertices_of(const FaceMesh& mesh) {
+  std::vector<VertexId> vertices;
+  for (std::size_t n = 0; n < mesh.node_count(); ++n)
+    if (mesh.triangle_at(NodeId(n)).valid()) vertices.push_back(mesh.node(NodeId(n)).vertex);
+  std::sort(vertices.begin(), vertices.end());
+  vertices.erase(std::unique(vertices.begin(), vertices.end()), vertices.end());
+  return vertices;
+}
 
 Result<BodyMesherResult> mesh_body(const Model& model, SizeField& sizes, const Settings& settings,
                                    const Options& options, StageClock& clock, Context& context) {

@@ -28,7 +28,7 @@ struct BodyMesh {
   CrossingResult crossings;
   PaperCounts paper;  ///< of `--recovery paper`
   ClassifyResult classified;
-  IndexedVector<FaceId, std::size_t> initial_points;  ///< of each face mesh before recovery
+  IndexedVector<FaceId, std::size_t> initial_points;  ///< vertices of each face mesh before recovery
   std::size_t initial_surface_points = 0;
 };
 
@@ -39,6 +39,9 @@ struct BodyMesherResult {
 };
 
 inline constexpr int kOuterRounds = 6;
+
+/// The vertices that the triangles of a face mesh use, each once (a vertex on a seam is two nodes).
+std::vector<VertexId> vertices_of(const FaceMesh& mesh);
 
 Result<BodyMesherResult> mesh_body(const Model& model, SizeField& sizes, const Settings& settings,
                                    const Options& options, StageClock& clock, Context& context);

@@ -64,7 +64,6 @@ Json face_json(const FaceReport& face) {
           {"relocks", face.relocks},
           {"unlocks", face.unlocks},
           {"flips_without_points", face.flips_without_points},
-          {"steiner", face.steiner},
           {"fallback", face.fallback}};
 }
 
@@ -112,7 +111,8 @@ std::string Report::to_json() const {
   json["schema"] = schema;
   json["version"] = version;
   json["valid"] = valid;
-  json["input"] = {{"file", input}, {"hash", input_hash}, {"unit", unit}, {"healing", healing}};
+  json["input"] = {
+      {"file", input}, {"hash", input_hash}, {"unit", unit}, {"file_unit", file_unit}, {"healing", healing}};
   json["mode"] = mode;
   json["options"] = options.is_discarded() ? Json() : options;
   json["counts"] = {{"points", points},

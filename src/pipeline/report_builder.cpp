@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <set>
 
 #include "pipeline/assemble.h"
@@ -39,12 +40,9 @@ Vec3 out_point(Vec3 working, const Model& model, const Settings& settings) {
   return settings.unit_scale * model.frame.to_cad(working);
 }
 
-std::size_t count_origin(const BodyMesh& body, FaceId face, Origin origin) {
-  std::size_t count = 0;
-  const FaceMesh& mesh = body.boundary.faces[face];
-  for (std::size_t n = 0; n < mesh.node_count(); ++n)
-    if (mesh.triangle_at(NodeId(n)).valid() && body.vertices.origin(mesh.node(NodeId(n)).vertex) == origin) ++count;
-  return count;
+std::size_t count_origin(const BodyMesh& body, const std::vector<VertexId>& vertices, Origin origin) {
+  return static_cast<std::size_t>(
+      std::count_if(vertices.begin(), vertices.end(), [&](VertexId v) { return body.vertices.origin(v) == origin; }));
 }
 
 struct FaceExtent {
@@ -65,25 +63,33 @@ FaceExtent extent_of(const BodyMesh& body, FaceId face) {
   return extent;
 }
 
-FaceReport face_report(const Model& model, const BodyMesh& body, FaceId face, std::uint64_t hash_final) {
+template <class SortedFacets>
+std::vector<FacetKey> in_common(const std::vector<FacetKey>& a, const SortedFacets& b) {
+  std::vector<FacetKey> both;
+  std::set_intersection(a.begin(), a.end(), b.begin(), b.end(), std::back_inserter(both));
+  return both;
+}
+
+FaceReport face_report(const Model& model, const BodyMesh& body, FaceId face, const std::vector<FacetKey>& locked) {
   FaceReport r;
   r.cad_id = model.faces[face].label.cad_id;
   r.name = model.face_name(face);
   r.kind = name(model.faces[face].surface->kind());
   r.initial_points = body.initial_points[face];
-  r.points_edge_recovery = count_origin(body, face, Origin::edge_recovery);
-  r.points_stage_one = count_origin(body, face, Origin::stage_one);
-  r.points_stage_two = count_origin(body, face, Origin::stage_two);
+  const std::vector<VertexId> vertices = vertices_of(body.boundary.faces[face]);
+  r.points_edge_recovery = count_origin(body, vertices, Origin::edge_recovery);
+  r.points_stage_one = count_origin(body, vertices, Origin::stage_one);
+  r.points_stage_two = count_origin(body, vertices, Origin::stage_two);
   const FaceCertificate& c = body.recovery.faces[face];
-  r.triangles_parametric = c.initial.size();
-  r.triangles = c.triangles;
-  r.coincide = c.coincide;
-  r.hash_locked = c.hash_locked;
-  r.hash_final = hash_final;
-  r.relocks = c.relocks;
+  r.triangles_parametric = c.parametric;
+  r.triangles = locked.size();
+  const std::vector<FacetKey> unchanged = in_common(locked, c.locked);
+  r.coincide = unchanged.size() - in_common(unchanged, c.marched).size();
+  r.hash_locked = facet_hash(c.locked);
+  r.hash_final = facet_hash(locked);
+  r.relocks = (locked.size() - unchanged.size() + 1) / 2;
   r.unlocks = c.unlocks;
   r.flips_without_points = c.reconnected;
-  r.steiner = c.steiner;
   r.fallback = c.fallback;
   return r;
 }
@@ -92,13 +98,14 @@ FaceReport face_report(const Model& model, const BodyMesh& body, FaceId face, st
 
 void report_input(Report& report, const Model& model, const Settings& settings, const Options& options) {
   report.unit = settings.unit;
+  report.file_unit = model.file_unit;
   report.mode = options.recovery == RecoveryMode::paper ? "paper" : "conjoint";
   report.options_json = options_json(options, settings, model);
   for (const HealingNote& note : model.healing) report.healing.push_back(note.entity + ": " + note.what);
 }
 
 void report_body(Report& report, const Model& model, const Settings& settings, const BodyMesherResult& body,
-                 const IndexedVector<FaceId, std::uint64_t>& hash_final) {
+                 const IndexedVector<FaceId, std::vector<FacetKey>>& locked) {
   const BodyMesh& mesh = *body.mesh;
   report.rounds = body.rounds;
   report.initial_surface_points = mesh.initial_surface_points;
@@ -116,7 +123,7 @@ void report_body(Report& report, const Model& model, const Settings& settings, c
   c.case4 = mesh.paper.case4;
   c.fallback_faces = mesh.paper.fallback_faces;
   for (std::size_t f = 0; f < model.faces.size(); ++f)
-    report.faces.push_back(face_report(model, mesh, FaceId(f), hash_final[FaceId(f)]));
+    report.faces.push_back(face_report(model, mesh, FaceId(f), locked[FaceId(f)]));
   const double scale = settings.unit_scale / model.frame.scale;
   for (std::size_t s = 0; s < model.solids.size(); ++s) {
     SolidReport r;

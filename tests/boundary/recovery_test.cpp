@@ -1,7 +1,9 @@
 // The boundary stages from face meshes to classified tets, on analytic bodies at several sizes, in both modes.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <functional>
+#include <iterator>
 #include <string_view>
 
 #include "support/bodies.h"
@@ -50,9 +52,9 @@ void expect_recovered(const Model& model, const BoundaryRun& run) {
   for (const RecoveryFailure& f : run.classified.failures) ADD_FAILURE() << f.what;
   if (testing::Test::HasFailure()) return;
   for (const std::string& broken : check_recovered(model, run)) ADD_FAILURE() << broken;
-  const auto hashes = locked_hashes(*run.tets, model.faces.size());
+  const auto locked = locked_facets(*run.tets, model.faces.size());
   for (std::size_t f = 0; f < model.faces.size(); ++f)
-    EXPECT_EQ(hashes[FaceId(f)], run.recovery.faces[FaceId(f)].hash_locked) << "face " << f;
+    EXPECT_EQ(locked[FaceId(f)], run.recovery.faces[FaceId(f)].locked) << "face " << f;
 }
 
 TEST_P(Recovery, DefaultModeLocksEveryFaceAndTellsTheSolidsApart) {
@@ -90,6 +92,61 @@ INSTANTIATE_TEST_SUITE_P(Bodies, Recovery, testing::ValuesIn(cases()),
 INSTANTIATE_TEST_SUITE_P(Bodies, PaperRecovery, testing::ValuesIn(paper_cases()),
                          [](const auto& tested) { return std::string(tested.param.name); });
 
+PaperCounts paper_counts(const Model& model, double size) {
+  BoundaryRunOptions options{size, 12};
+  options.as_paper = true;
+  return run_boundary(model, options)->paper;
+}
+
+TEST(PaperCounts, StageOneRefinesAndItsCancelRuleAllows) {
+  const PaperCounts counts = paper_counts(make_tube(10, 9.5, 30), 5);
+  ASSERT_FALSE(HasFailure());
+  EXPECT_GT(counts.stage_one_points, 0u);
+  EXPECT_GT(counts.stage_one_allowed, 0u);
+}
+
+// Case 1: the other diagonal of a face of two triangles leaves nothing of t_ps that is a facet.
+TEST(PaperCounts, RemeshingCaseOneStartsFromNothing) {
+  const Model model = make_box(2, 2, 2);
+  BoundaryRunOptions options{10, 12};
+  options.until = Until::tets;
+  options.as_paper = true;
+  const auto run = run_boundary(model, options);
+  ASSERT_FALSE(HasFailure());
+  FaceMesh& mesh = run->boundary.faces[FaceId(0)];
+  ASSERT_EQ(mesh.triangle_count(), 2u);
+  const FaceTriangle first = mesh.triangle(TriangleId(0));
+  const auto inner = static_cast<std::size_t>(
+      std::find_if(first.neighbour.begin(), first.neighbour.end(), [](TriangleId t) { return t.valid(); }) -
+      first.neighbour.begin());
+  const NodeId apex = first.node[inner], a = first.node[(inner + 1) % 3], b = first.node[(inner + 2) % 3];
+  NodeId across;
+  for (NodeId n : mesh.triangle(first.neighbour[inner]).node)
+    if (n != a && n != b) across = n;
+  ASSERT_TRUE(mesh.replace(std::vector<NodeTriple>{{apex, a, across}, {apex, across, b}}));
+  Context context;
+  const auto recovered = recover_faces_as_paper(*run->conjoint, {1e-3}, context);
+  ASSERT_TRUE(recovered.ok());
+  for (const RecoveryFailure& f : recovered.value().recovery.failures)
+    ADD_FAILURE() << f.what << ", face " << f.faces.front().value();
+  EXPECT_GT(recovered.value().counts.case1, 0u);
+  EXPECT_EQ(recovered.value().counts.fallback_faces, 0u);
+}
+
+TEST(PaperCounts, RemeshingCasesThreeAndFourAreMet) {
+  PaperCounts sum;
+  for (const auto& [model, size] : {std::pair{make_ball(3), 1.0}, {make_ball(3), 6.0}, {make_shell(10, 9), 5.0}}) {
+    const PaperCounts counts = paper_counts(model, size);
+    ASSERT_FALSE(HasFailure());
+    sum.case3a += counts.case3a;
+    sum.case3b += counts.case3b;
+    sum.case4 += counts.case4;
+  }
+  EXPECT_GT(sum.case3a, 0u);
+  EXPECT_GT(sum.case3b, 0u);
+  EXPECT_GT(sum.case4, 0u);
+}
+
 TEST(Crossings, CoarseThinShellWithoutGapSizesIsCured) {
   const Model model = make_shell(10, 9.8);
   BoundaryRunOptions options{8, 0};
@@ -100,6 +157,35 @@ TEST(Crossings, CoarseThinShellWithoutGapSizesIsCured) {
   EXPECT_GT(run->crossings.first_pairs, 0u);
   EXPECT_TRUE(run->crossings.failures.empty());
   EXPECT_TRUE(crossing_pairs(run->vertices, surface_triangles(run->boundary)).empty());
+}
+
+// The certificate says which facets of T_Γ are not those of t_3d; here that is found by comparing the two.
+TEST(Certificate, TellsWhatTheMarchBroughtIn) {
+  std::size_t brought_in = 0;
+  for (double size : {0.8, 0.5, 0.35}) {
+    const Model model = make_cylinder(2, 5);
+    BoundaryRunOptions options{size, 12};
+    options.until = Until::tets;
+    const auto run = run_boundary(model, options);
+    ASSERT_FALSE(HasFailure());
+    std::vector<std::vector<FacetKey>> before;
+    for (std::size_t f = 0; f < model.faces.size(); ++f)
+      before.push_back(facets_of(run->boundary.faces[FaceId(f)], FaceId(f)));
+    Context context;
+    const auto recovered = recover_faces(*run->conjoint, {0.001}, context);
+    ASSERT_TRUE(recovered.ok() && recovered.value().failures.empty());
+    ASSERT_EQ(recovered.value().points + recovered.value().edge_splits, 0u) << "so that t_3d is the one of before";
+    for (std::size_t f = 0; f < model.faces.size(); ++f) {
+      const FaceCertificate& c = recovered.value().faces[FaceId(f)];
+      std::vector<FacetKey> only_after;
+      std::set_difference(c.locked.begin(), c.locked.end(), before[f].begin(), before[f].end(),
+                          std::back_inserter(only_after));
+      EXPECT_EQ(only_after, std::vector<FacetKey>(c.marched.begin(), c.marched.end()));
+      EXPECT_EQ(c.parametric, before[f].size());
+      brought_in += only_after.size();
+    }
+  }
+  EXPECT_GT(brought_in, 0u) << "or the test says nothing";
 }
 
 TEST(Classification, VolumesApproachTheCadAsTheSizeFalls) {

@@ -96,9 +96,9 @@ TEST(Conjoint, LockedFacesRefuseWhatWouldSplitThem) {
     const auto done = run->conjoint->split_segment(s.edge, s.a, s.b, Origin::stage_two);
     EXPECT_EQ(done.refusal, ConjointRefusal::locked_cavity);
   }
-  const auto hashes = locked_hashes(*run->tets, model.faces.size());
+  const auto locked = locked_facets(*run->tets, model.faces.size());
   for (std::size_t f = 0; f < model.faces.size(); ++f)
-    EXPECT_EQ(hashes[FaceId(f)], run->recovery.faces[FaceId(f)].hash_locked);
+    EXPECT_EQ(locked[FaceId(f)], run->recovery.faces[FaceId(f)].locked);
 }
 
 }  // namespace

@@ -13,7 +13,7 @@ TEST(ReportJson, IsJsonAndKeepsItsOrder) {
   const std::string text = Report{}.to_json();
   const auto json = nlohmann::ordered_json::parse(text);
   EXPECT_EQ(json.begin().key(), "schema");
-  EXPECT_EQ(json["schema"], 1);
+  EXPECT_EQ(json["schema"], 2);
   EXPECT_TRUE(json["options"].is_null());
   EXPECT_EQ(text, Report{}.to_json());
 }

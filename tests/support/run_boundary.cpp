@@ -108,7 +108,10 @@ std::vector<std::string> check_recovered(const Model& model, const BoundaryRun& 
     for (const auto& [edge, n] : count)
       if (n != (uses.count(edge) ? uses[edge] : 2)) broken.push_back("an edge has a wrong number of triangles (IV, V)");
   }
-  if (locked_hashes(*run.tets, model.faces.size()).size() != model.faces.size()) broken.push_back("hashes");
+  const auto locked = locked_facets(*run.tets, model.faces.size());
+  for (std::size_t f = 0; f < model.faces.size(); ++f)
+    if (locked[FaceId(f)] != facets_of(run.boundary.faces[FaceId(f)], FaceId(f)))
+      broken.push_back("facets are locked for a face that are not in its T");
   return broken;
 }
 
