@@ -16,7 +16,8 @@ namespace curvetet::cli {
 
 namespace {
 
-constexpr const char* kFooter = R"(Lengths are in the unit of the output (--unit; by default that of the input).
+constexpr const char* kFooter =
+    R"(Lengths are in the unit of the output: --unit, by default mm; for BREP files, which carry no unit, --input-unit.
 
 Examples:
   curvetet mesh bracket.step -o bracket.msh
@@ -201,7 +202,7 @@ void describe_stages(CLI::App& app, RawMesh& raw, Options& options) {
 }
 
 void describe_units_and_limits(CLI::App& app, RawMesh& raw, Options& options) {
-  app.add_option("--unit", options.unit, "unit of the output: um, mm, cm, m, inch, ft; default: the input's")
+  app.add_option("--unit", options.unit, "unit of the output: um, mm, cm, m, inch, ft; default: mm, or --input-unit")
       ->type_name("UNIT")
       ->group("Units");
   app.add_option("--input-unit", options.input_unit, "unit of an input that carries none (BREP); default: mm")

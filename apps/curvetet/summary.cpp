@@ -75,7 +75,9 @@ std::string time_line(const Report& report) {
 }  // namespace
 
 std::string summary(const Report& report) {
-  std::string text = fmt::format("{} ({})\n", report.input, report.unit);
+  const bool converted = !report.file_unit.empty() && report.file_unit != report.unit;
+  std::string text =
+      fmt::format("{} ({}{})\n", report.input, report.unit, converted ? ", in the file " + report.file_unit : "");
   text += size_line(report);
   text += line("counts", fmt::format("{} points, {} tetrahedra, {} boundary triangles", report.points, report.tets,
                                      report.triangles));

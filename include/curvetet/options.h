@@ -30,8 +30,8 @@ struct Options {
   std::vector<LocalSize> local_sizes;
   std::function<double(Point)> size_callback;
 
-  std::string unit;         ///< output unit "mm", "m", "inch"; default: the input's
-  std::string input_unit;   ///< for files that carry none; default: mm
+  std::string unit;  ///< of the output: "um", "mm", "cm", "m", "inch", "ft"; default: mm, or `input_unit` if given
+  std::string input_unit;   ///< of BREP files and shapes in memory, which carry none; default: mm
   bool isolate_cad = true;  ///< read and heal in a helper process
 
   RecoveryMode recovery = RecoveryMode::conjoint;

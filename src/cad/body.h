@@ -26,6 +26,7 @@ struct CadBody {
   std::vector<std::string> solid_paths;  ///< assembly path per solid
   std::vector<char> shared_product;      ///< per solid: its product has other solids too (known while reading only)
   std::string unit = "mm";
+  std::string file_unit;  ///< what the file says its lengths are in; empty if it does not
   std::vector<HealingNote> notes;
   CadMeasures measures;
 };

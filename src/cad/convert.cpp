@@ -197,6 +197,7 @@ class Converter {
     next_vertex_label_ = next_edge_label_ = 0;
     model_.frame = frame;
     model_.unit = body_.unit;
+    model_.file_unit = body_.file_unit;
     model_.healing = notes_;
     if (ignored_ > 0) note("file", std::to_string(ignored_) + " faces that belong to no solid are left out");
     make_vertices();
@@ -225,7 +226,8 @@ class Converter {
     };
     Box3 limits = limit(box);
     if (box.IsOpen() || largest(limits) > kInfinite) {
-      return Error{ErrorCode::unbounded, source_ + " is not bounded: a face reaches to infinity"};
+      return Error{ErrorCode::unbounded, source_ + " is not bounded: a face reaches to infinity",
+                   unbounded_faces(body_)};
     }
     if (!finite(limits.low) || !finite(limits.high)) {
       return Error{ErrorCode::not_finite, source_ + " has coordinates that are not finite numbers"};
@@ -517,6 +519,22 @@ class Converter {
 Result<Model> convert_body(CadBody& body, const std::string& source) {
   return guarded(ErrorCode::reader_failed, "cannot use the shape in " + source,
                  [&] { return Converter(body, source).run(); });
+}
+
+std::vector<std::string> unbounded_faces(const CadBody& body) {
+  std::vector<std::string> found;
+  const TopTools_IndexedMapOfShape faces = sub_shapes(body.shape, TopAbs_FACE);
+  for (int f = 1; f <= faces.Extent() && found.size() < 20; ++f) {
+    Bnd_Box box;
+    BRepBndLib::Add(faces(f), box, false);
+    Standard_Real x0 = 0, y0 = 0, z0 = 0, x1 = 0, y1 = 0, z1 = 0;
+    if (box.IsVoid()) continue;
+    box.Get(x0, y0, z0, x1, y1, z1);
+    const double largest = std::max({-x0, -y0, -z0, x1, y1, z1});
+    if (box.IsOpen() || largest > kInfinite)
+      found.push_back("face " + std::to_string(body.faces[static_cast<std::size_t>(f - 1)].cad_id));
+  }
+  return found;
 }
 
 }  // namespace curvetet

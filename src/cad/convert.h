@@ -3,6 +3,7 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "base/error.h"
 #include "cad/body.h"
@@ -13,5 +14,8 @@ namespace curvetet {
 /// no_solid, unbounded, not_finite, zero_size, overlapping_solids. `source` names the file in messages. The body's
 /// measures are used where they are there, and completed.
 Result<Model> convert_body(CadBody& body, const std::string& source);
+
+/// The faces that reach to infinity, as "face 12"; at most twenty.
+std::vector<std::string> unbounded_faces(const CadBody& body);
 
 }  // namespace curvetet

@@ -23,6 +23,8 @@ namespace {
 Error open_shell(const CadBody& body, const std::string& source, const std::vector<TopoDS_Edge>& edges) {
   const std::string why = edges.empty() ? "its faces close around no volume, or cannot be turned to face outward"
                                         : std::to_string(edges.size()) + " free edges";
+  if (const std::vector<std::string> unbounded = unbounded_faces(body); edges.empty() && !unbounded.empty())
+    return {ErrorCode::unbounded, source + " is not bounded: a face reaches to infinity", unbounded};
   Error error{ErrorCode::open_shell, source + " is not closed: " + why};
   error.hint = "close the gaps in the CAD system, or export a solid instead of surfaces";
   if (edges.empty()) return error;

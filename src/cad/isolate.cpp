@@ -126,11 +126,11 @@ Error crashed(const std::string& path, int signal_number) {
 }
 
 Error timed_out(const std::string& path, double seconds) {
-  return Error{ErrorCode::time_limit,
-               "reading " + path + " took longer than " + seconds_text(seconds),
+  return Error{ErrorCode::reader_failed,
+               "the CAD kernel did not end reading " + path + " within " + seconds_text(seconds),
                {},
                {},
-               "give it more time, or simplify the body"};
+               "a time limit for the run longer than that lets it read on; or export the body again"};
 }
 
 void limit(int resource, rlim_t value) {

@@ -15,7 +15,8 @@ namespace curvetet {
 std::optional<std::string> find_helper(const LoadOptions& options);
 
 /// Reads and heals `path` in a helper process, which is killed when its time is over or the context says stop. Errors:
-/// the helper's own, reader_crashed, time_limit, cancelled, bad_option (the program is no helper).
+/// the helper's own, reader_crashed, reader_failed (also when it takes too long), cancelled, bad_option (the program is
+/// no helper).
 Result<CadBody> read_isolated(const std::string& path, const std::string& helper, const LoadOptions& options,
                               Context& context);
 

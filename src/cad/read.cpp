@@ -26,6 +26,7 @@
 #include <fstream>
 
 #include "cad/guard.h"
+#include "cad/scan.h"
 #include "cad/step_names.h"
 
 namespace curvetet {
@@ -225,10 +226,12 @@ Error failed(const std::string& path, const std::string& why) {
 }
 
 void note_unit(CadBody& body, const std::string& unit) {
+  body.file_unit = unit;
   if (!unit.empty() && unit != "mm") body.notes.push_back({"file", "lengths converted from " + unit + " to mm"});
 }
 
-Result<CadBody> read_step(const std::string& path) {
+Result<CadBody> read_step(const std::string& path, const std::string& unit) {
+  if (auto bad = scan_step(path)) return *bad;
   const NoAutomaticNames no_names;
   STEPCAFControl_Reader reader;
   reader.SetLayerMode(false);
@@ -244,7 +247,11 @@ Result<CadBody> read_step(const std::string& path) {
   CadBody body = Document(document).make_body();
   if (body.shape.IsNull()) return failed(path, "it holds no shape");
   add_step_names(reader.Reader().WS(), body);
-  if (lengths.Length() > 0) note_unit(body, short_unit(lengths(1).ToCString()));
+  if (lengths.Length() > 0) {
+    note_unit(body, short_unit(lengths(1).ToCString()));
+  } else if (!unit.empty()) {
+    body.unit = unit;  // the reader leaves lengths without a unit as they are
+  }
   return body;
 }
 
@@ -290,7 +297,10 @@ Result<CadFormat> detect_format(const std::string& path) {
     return CadFormat::step;
   }
   if (ends.head.find("Open CASCADE Topology") != std::string::npos) return CadFormat::binary_brep;
-  if (ends.head.find("CASCADE Topology") != std::string::npos) return CadFormat::brep;
+  if (ends.head.find("CASCADE Topology") != std::string::npos) {
+    if (!brep_is_complete(ends.tail)) return failed(path, "the end of the file is missing");
+    return CadFormat::brep;
+  }
   if (looks_like_iges(ends.head)) return CadFormat::iges;
   const std::string ending = lower(std::filesystem::path(path).extension().string());
   if (ending == ".step" || ending == ".stp") return failed(path, "it does not start as a STEP file does");
@@ -306,7 +316,7 @@ Result<CadBody> read_body(const std::string& path, const std::string& input_unit
   return guarded(ErrorCode::reader_failed, "cannot read " + path, [&]() -> Result<CadBody> {
     switch (format.value()) {
       case CadFormat::step:
-        return read_step(path);
+        return read_step(path, input_unit);
       case CadFormat::iges:
         return read_iges(path);
       case CadFormat::brep:

@@ -126,6 +126,7 @@ Parsed parse(std::istream& in) {
     const std::string kind = fields.at(0);
     if (kind == "end") parsed.complete = true;
     if (kind == "unit") parsed.body.unit = fields.at(1);
+    if (kind == "file unit") parsed.body.file_unit = fields.at(1);
     if (kind == "note") parsed.body.notes.push_back({fields.at(1), fields.at(2)});
     if (kind == "area") parsed.body.measures.face_areas.push_back(number(fields.at(1)));
     if (kind == "volume") parsed.body.measures.shell_volumes.push_back(number(fields.at(1)));
@@ -154,7 +155,7 @@ bool announce_transfer(const std::string& out_path) {
 bool write_transfer(const CadBody& body, const std::string& out_path) {
   if (!BinTools::Write(body.shape, out_path.c_str(), false, false, BinTools_FormatVersion_CURRENT)) return false;
   std::ofstream out(labels_path(out_path), std::ios::app);
-  out << "unit\t" << escaped(body.unit) << '\n';
+  out << "unit\t" << escaped(body.unit) << "\nfile unit\t" << escaped(body.file_unit) << '\n';
   for (const HealingNote& note : body.notes)
     out << "note\t" << escaped(note.entity) << '\t' << escaped(note.what) << '\n';
   for (const TopAbs_ShapeEnum type : kLabelled) {

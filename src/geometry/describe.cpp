@@ -56,6 +56,17 @@ std::string solid_json(const Model& model, SolidId solid) {
   return solid.valid() ? std::to_string(model.solids[solid].label.cad_id) : "null";
 }
 
+std::string kind_of(const ModelEdge& edge) {
+  if (edge.degenerate) return "pole";
+  return edge.curve == nullptr ? "other" : name(edge.curve->kind());
+}
+
+std::string face_ids(const Model& model, const std::vector<FaceId>& faces) {
+  std::string ids;
+  for (const FaceId face : faces) ids += (ids.empty() ? "" : ", ") + std::to_string(model.faces[face].label.cad_id);
+  return ids;
+}
+
 /// Items one per line between the brackets of a list.
 std::string list_json(const std::vector<std::string>& items) {
   if (items.empty()) return "[]";
@@ -64,18 +75,25 @@ std::string list_json(const std::vector<std::string>& items) {
   return out + "  ]";
 }
 
+std::vector<std::string> edges_json(const Model& model) {
+  std::vector<std::string> edges;
+  for (std::size_t i = 0; i < model.edges.size(); ++i) {
+    const ModelEdge& edge = model.edges[EdgeId(i)];
+    edges.push_back(fmt::format(R"({{"id": {}, "kind": "{}", "name": {}, "colour": {}, "faces": [{}]}})",
+                                edge.label.cad_id, kind_of(edge), quoted(model.edge_name(EdgeId(i))),
+                                colour_json(edge.label.colour), face_ids(model, edge.faces)));
+  }
+  return edges;
+}
+
 std::string to_json(const Model& model, const Summary& summary) {
   std::vector<std::string> solids, faces, notes;
   for (std::size_t i = 0; i < model.solids.size(); ++i) {
     const ModelSolid& solid = model.solids[SolidId(i)];
-    std::string ids;
-    for (const FaceId face : solid.faces) {
-      ids += (ids.empty() ? "" : ", ") + std::to_string(model.faces[face].label.cad_id);
-    }
-    solids.push_back(
-        fmt::format(R"({{"id": {}, "name": {}, "path": {}, "colour": {}, "volume": {:.12g}, "faces": [{}]}})",
-                    solid.label.cad_id, quoted(model.solid_name(SolidId(i))), quoted(solid.path),
-                    colour_json(solid.label.colour), solid.volume * summary.volume_factor, ids));
+    solids.push_back(fmt::format(
+        R"({{"id": {}, "name": {}, "path": {}, "colour": {}, "volume": {:.12g}, "faces": [{}]}})", solid.label.cad_id,
+        quoted(model.solid_name(SolidId(i))), quoted(solid.path), colour_json(solid.label.colour),
+        solid.volume * summary.volume_factor, face_ids(model, solid.faces)));
   }
   for (std::size_t i = 0; i < model.faces.size(); ++i) {
     const ModelFace& face = model.faces[FaceId(i)];
@@ -95,19 +113,23 @@ std::string to_json(const Model& model, const Summary& summary) {
   }
   const Vec3 &a = summary.low, &b = summary.high;
   return fmt::format(
-      "{{\n  \"schema\": 1,\n  \"unit\": {},\n  \"box\": [{:.12g}, {:.12g}, {:.12g}, {:.12g}, {:.12g}, {:.12g}],\n"
+      "{{\n  \"schema\": 1,\n  \"unit\": {},\n  \"file_unit\": {},\n  \"box\": [{:.12g}, {:.12g}, {:.12g}, {:.12g}, "
+      "{:.12g}, {:.12g}],\n"
       "  \"counts\": {{\"solids\": {}, \"faces\": {}, \"edges\": {}, \"vertices\": {}}},\n  \"surfaces\": {{{}}},\n"
-      "  \"solids\": {},\n  \"faces\": {},\n  \"healing\": {}\n}}\n",
-      quoted(model.unit), a.x, a.y, a.z, b.x, b.y, b.z, model.solids.size(), model.faces.size(), model.edges.size(),
-      model.vertices.size(), kinds, list_json(solids), list_json(faces), list_json(notes));
+      "  \"solids\": {},\n  \"faces\": {},\n  \"edges\": {},\n  \"healing\": {}\n}}\n",
+      quoted(model.unit), model.file_unit.empty() ? "null" : quoted(model.file_unit), a.x, a.y, a.z, b.x, b.y, b.z,
+      model.solids.size(), model.faces.size(), model.edges.size(), model.vertices.size(), kinds, list_json(solids),
+      list_json(faces), list_json(edges_json(model)), list_json(notes));
 }
 
 std::string to_words(const Model& model, const Summary& summary) {
   std::string out;
   const auto add = [&](const std::string& line) { out += line + "\n"; };
   const Vec3 &a = summary.low, &b = summary.high;
-  add(fmt::format("{} solids, {} faces, {} edges, {} vertices; lengths in {}", model.solids.size(), model.faces.size(),
-                  model.edges.size(), model.vertices.size(), model.unit));
+  add(fmt::format(
+      "{} solids, {} faces, {} edges, {} vertices; lengths in {}{}", model.solids.size(), model.faces.size(),
+      model.edges.size(), model.vertices.size(), model.unit,
+      model.file_unit.empty() || model.file_unit == model.unit ? "" : ", in the file in " + model.file_unit));
   add(fmt::format("box ({:.6g}, {:.6g}, {:.6g}) to ({:.6g}, {:.6g}, {:.6g}), diagonal {:.6g}", a.x, a.y, a.z, b.x, b.y,
                   b.z, distance(a, b)));
   std::string kinds;
@@ -126,6 +148,11 @@ std::string to_words(const Model& model, const Summary& summary) {
     const ModelFace& face = model.faces[FaceId(i)];
     add(fmt::format("face {}  {}  {}  area {:.6g}", face.label.cad_id, name(kind_of(face)), model.face_name(FaceId(i)),
                     face.area * summary.area_factor));
+  }
+  for (std::size_t i = 0; i < model.edges.size(); ++i) {
+    const ModelEdge& edge = model.edges[EdgeId(i)];
+    add(fmt::format("edge {}  {}  {}  on faces {}", edge.label.cad_id, kind_of(edge), model.edge_name(EdgeId(i)),
+                    face_ids(model, edge.faces)));
   }
   for (const HealingNote& note : model.healing) add("note: " + note.entity + ": " + note.what);
   return out;

@@ -93,6 +93,7 @@ struct HealingNote {
 struct Model {
   Frame frame;
   std::string unit = "mm";  ///< unit of the CAD coordinates that `frame` maps from
+  std::string file_unit;    ///< of the lengths in the file, which reading converted to `unit`; empty: it says none
   Box3 box;                 ///< of the body, working coordinates
   IndexedVector<SolidId, ModelSolid> solids;
   IndexedVector<FaceId, ModelFace> faces;

@@ -7,6 +7,7 @@ import json
 import os
 import pathlib
 import pty
+import re
 import signal
 import subprocess
 import sys
@@ -114,15 +115,77 @@ class UsageErrors(CommandLineTest):
 
 
 class BadInput(CommandLineTest):
-    def expect_refused(self, path):
+    def expect_refused(self, path, *arguments):
         mesh, report = self.folder / "out.msh", self.folder / "out.json"
-        result = self.expect(3, "mesh", path, "-o", mesh, "--report", report)
+        begin = time.monotonic()
+        result = self.expect(3, "mesh", path, "-o", mesh, "--report", report, *arguments)
+        self.assertLess(time.monotonic() - begin, 20)
         self.assertIn("error:", result.stderr)
+        self.assertIn(os.fspath(path), result.stderr)
         self.assertFalse(mesh.exists())
         errors = json.loads(report.read_text())["errors"]
         self.assertEqual(len(errors), 1)
+        self.error = errors[0]
         report.unlink()
         return errors[0]["code"]
+
+    def test_bodies_that_bound_no_volume(self):
+        for isolation in ([], ["--no-isolate"]):
+            with self.subTest(isolation=isolation):
+                for name in ("plane.brep", "half_space.brep"):
+                    self.assertEqual(self.expect_refused(BODIES / name, *isolation), "unbounded")
+                    self.assertEqual(self.error["entities"], ["face 1"])
+                self.assertEqual(self.expect_refused(BODIES / "vertex.brep", *isolation), "no_faces")
+                self.assertEqual(self.expect_refused(BODIES / "speck.brep", *isolation), "zero_size")
+                for name in ("open.brep", "open.step"):
+                    self.assertEqual(self.expect_refused(BODIES / name, *isolation), "open_shell")
+                    self.assertEqual(len(self.error["entities"]), 4)
+                    self.assertRegex(self.error["entities"][0], r"^edge \d+$")
+                    self.assertEqual(len(self.error["where"]), 3)
+        self.assertEqual(self.files(), [])
+
+    def test_coordinates_that_are_no_numbers(self):
+        brep, step = (BODIES / "ball.brep").read_text(), (BODIES / "box.step").read_text()
+        for number in ("nan", "inf", "1e308", "-1e300"):
+            for name, text in (
+                ("bad.brep", brep.replace("5 ", number + " ")),
+                ("bad.step", re.sub(r"(CARTESIAN_POINT\('',\()[^,]*,", rf"\g<1>{number},", step, count=3)),
+            ):
+                with self.subTest(name=name, number=number):
+                    path = self.folder / name
+                    path.write_text(text)
+                    self.assertNotIn(self.expect_refused(path), ("reader_crashed", "time_limit"))
+                    if name == "bad.step":
+                        self.assertEqual(self.error["code"], "not_finite")
+                        self.assertRegex(self.error["entities"][0], r"^#\d+$")
+                    path.unlink()
+        self.assertEqual(self.files(), [])
+
+    def test_wrong_endings(self):
+        # The content decides, whatever the ending says; what no reader knows is refused.
+        for name in ("plate.brep", "plate.igs", "plate.txt", "plate"):
+            with self.subTest(name=name):
+                path, mesh = self.folder / name, self.folder / "out.msh"
+                path.write_bytes((BODIES / "plate.step").read_bytes())
+                self.expect(0, "mesh", path, "-o", mesh)
+                mesh.unlink()
+                path.unlink()
+        text = self.folder / "text.txt"
+        text.write_text("no body\n")
+        self.assertEqual(self.expect_refused(text), "unknown_format")
+        text.rename(self.folder / "text.step")
+        self.assertEqual(self.expect_refused(self.folder / "text.step"), "reader_failed")
+
+    def test_files_that_end_too_early(self):
+        whole = {name: (BODIES / name).read_bytes() for name in ("plate.step", "ball.brep")}
+        for name, content in whole.items():
+            for share in (0.02, 0.2, 0.5, 0.8, 0.97):
+                with self.subTest(name=name, share=share):
+                    path = self.folder / name
+                    path.write_bytes(content[: int(share * len(content))])
+                    self.assertNotIn(self.expect_refused(path), ("reader_crashed", "time_limit"))
+                    path.unlink()
+        self.assertEqual(self.files(), [])
 
     def test_missing_folder_empty(self):
         self.assertEqual(self.expect_refused(self.folder / "none.step"), "file_not_found")

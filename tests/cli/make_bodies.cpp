@@ -1,11 +1,21 @@
-// Writes the CAD files that the tests of the command line mesh: box.step, plate.step (a plate with a bore), ball.brep.
+// Writes the CAD files that the tests of the command line mesh: box.step, plate.step (a plate with a bore), ball.brep;
+// and those that it must refuse: a plane and a half space without end, an open shell, a body without size, a vertex.
 #include <BRepAlgoAPI_Cut.hxx>
+#include <BRepBuilderAPI_MakeFace.hxx>
+#include <BRepBuilderAPI_MakeVertex.hxx>
+#include <BRepBuilderAPI_Transform.hxx>
 #include <BRepPrimAPI_MakeBox.hxx>
 #include <BRepPrimAPI_MakeCylinder.hxx>
+#include <BRepPrimAPI_MakeHalfSpace.hxx>
 #include <BRepPrimAPI_MakeSphere.hxx>
 #include <BRepTools.hxx>
+#include <BRep_Builder.hxx>
 #include <STEPControl_Writer.hxx>
+#include <TopExp_Explorer.hxx>
+#include <TopoDS.hxx>
+#include <TopoDS_Shell.hxx>
 #include <cstdio>
+#include <gp_Pln.hxx>
 #include <string>
 
 namespace {
@@ -13,6 +23,32 @@ namespace {
 bool write_step(const TopoDS_Shape& shape, const std::string& path) {
   STEPControl_Writer writer;
   return writer.Transfer(shape, STEPControl_AsIs) == IFSelect_RetDone && writer.Write(path.c_str()) == IFSelect_RetDone;
+}
+
+TopoDS_Shell open_shell() {
+  TopoDS_Shell shell;
+  BRep_Builder builder;
+  builder.MakeShell(shell);
+  TopExp_Explorer face(BRepPrimAPI_MakeBox(1, 2, 3).Shape(), TopAbs_FACE);
+  for (face.Next(); face.More(); face.Next()) builder.Add(shell, face.Current());
+  return shell;
+}
+
+TopoDS_Shape without_size() {
+  gp_Trsf shrink;
+  shrink.SetScale(gp_Pnt(0, 0, 0), 1e-12);
+  return BRepBuilderAPI_Transform(BRepPrimAPI_MakeBox(1, 2, 3).Shape(), shrink, true).Shape();
+}
+
+bool write_brep(const TopoDS_Shape& shape, const std::string& path) { return BRepTools::Write(shape, path.c_str()); }
+
+bool write_bad_bodies(const std::string& folder) {
+  const TopoDS_Face plane = BRepBuilderAPI_MakeFace(gp_Pln()).Face();
+  return write_brep(plane, folder + "plane.brep") &&
+         write_brep(BRepPrimAPI_MakeHalfSpace(plane, gp_Pnt(0, 0, 9)).Shape(), folder + "half_space.brep") &&
+         write_brep(open_shell(), folder + "open.brep") && write_step(open_shell(), folder + "open.step") &&
+         write_brep(without_size(), folder + "speck.brep") &&
+         write_brep(BRepBuilderAPI_MakeVertex(gp_Pnt(1, 2, 3)).Shape(), folder + "vertex.brep");
 }
 
 }  // namespace
@@ -27,6 +63,6 @@ int main(int argc, char** argv) {
   const TopoDS_Shape bore = BRepPrimAPI_MakeCylinder(gp_Ax2(gp_Pnt(5, 10, -1), gp_Dir(0, 0, 1)), 3, 40).Shape();
   const bool done = write_step(box, folder + "box.step") &&
                     write_step(BRepAlgoAPI_Cut(box, bore).Shape(), folder + "plate.step") &&
-                    BRepTools::Write(BRepPrimAPI_MakeSphere(5).Shape(), (folder + "ball.brep").c_str());
+                    write_brep(BRepPrimAPI_MakeSphere(5).Shape(), folder + "ball.brep") && write_bad_bodies(folder);
   return done ? 0 : 1;
 }
