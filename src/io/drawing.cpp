@@ -2,9 +2,13 @@
 // with no fight between depths. Averaging several samples per pixel smooths both.
 #include "io/drawing.h"
 
+#include <png.h>
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
+
+#include "io/formats.h"
 
 namespace curvetet {
 
@@ -87,6 +91,21 @@ std::vector<std::uint8_t> Canvas::pixels() const {
     }
   }
   return result;
+}
+
+Status write_png(const std::string& path, const std::vector<std::uint8_t>& pixels, int width, int height) {
+  const Error refused{ErrorCode::output_unwritable, path + " cannot be made into a PNG file"};
+  png_image image{};
+  image.version = PNG_IMAGE_VERSION;
+  image.width = static_cast<png_uint_32>(width);
+  image.height = static_cast<png_uint_32>(height);
+  image.format = PNG_FORMAT_RGB;
+  png_alloc_size_t size = 0;
+  if (png_image_write_to_memory(&image, nullptr, &size, 0, pixels.data(), 0, nullptr) == 0) return refused;
+  std::string file(size, '\0');
+  if (png_image_write_to_memory(&image, file.data(), &size, 0, pixels.data(), 0, nullptr) == 0) return refused;
+  file.resize(size);
+  return write_file_atomically(path, file);
 }
 
 }  // namespace curvetet

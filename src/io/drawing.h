@@ -3,8 +3,10 @@
 
 #include <array>
 #include <cstdint>
+#include <string>
 #include <vector>
 
+#include "base/error.h"
 #include "base/vec.h"
 
 namespace curvetet {
@@ -34,5 +36,8 @@ class Canvas {
   std::vector<float> depth_;
   std::vector<Byte3> colour_;
 };
+
+/// Writes rows as Canvas::pixels() gives them to a PNG file, whole or not at all.
+Status write_png(const std::string& path, const std::vector<std::uint8_t>& pixels, int width, int height);
 
 }  // namespace curvetet

@@ -4,7 +4,6 @@
 #include "io/picture.h"
 
 #include <fmt/format.h>
-#include <png.h>
 
 #include <algorithm>
 #include <cmath>
@@ -204,21 +203,6 @@ class Painter {
   std::vector<std::array<std::uint32_t, 2>> segments_;
 };
 
-/// The pixels as a PNG file; empty if libpng refuses.
-std::string png_of(const std::vector<std::uint8_t>& pixels, const PictureOptions& options) {
-  png_image image{};
-  image.version = PNG_IMAGE_VERSION;
-  image.width = static_cast<png_uint_32>(options.width);
-  image.height = static_cast<png_uint_32>(options.height);
-  image.format = PNG_FORMAT_RGB;
-  png_alloc_size_t size = 0;
-  if (png_image_write_to_memory(&image, nullptr, &size, 0, pixels.data(), 0, nullptr) == 0) return {};
-  std::string file(size, '\0');
-  if (png_image_write_to_memory(&image, file.data(), &size, 0, pixels.data(), 0, nullptr) == 0) return {};
-  file.resize(size);
-  return file;
-}
-
 }  // namespace
 
 Status write_picture(const Mesh& mesh, const std::string& path, const PictureOptions& options) {
@@ -233,9 +217,7 @@ Status write_picture(const Mesh& mesh, const std::string& path, const PictureOpt
     return Error{
         ErrorCode::no_faces, "there is nothing to draw", {}, {}, "cut elsewhere, or look whether the mesh is empty"};
   }
-  const std::string file = png_of(painter.pixels(), options);
-  if (file.empty()) return Error{ErrorCode::output_unwritable, path + " cannot be made into a PNG file"};
-  return write_file_atomically(path, file);
+  return write_png(path, painter.pixels(), options.width, options.height);
 }
 
 }  // namespace curvetet
