@@ -219,6 +219,31 @@ void part_single_segments(const Model& model, IndexedVector<EdgeId, std::vector<
   }
 }
 
+/// Edges in the same place get the same points, so that their chords do not cross, and at least one between their ends.
+void match_twins(const Model& model, IndexedVector<EdgeId, std::vector<double>>& parameters) {
+  for (std::size_t i = 0; i < parameters.size(); ++i) {
+    const ModelEdge& edge = model.edges[EdgeId(i)];
+    if (!edge.twin.valid()) continue;
+    const ModelEdge& other = model.edges[edge.twin];
+    std::vector<double>&own = parameters[EdgeId(i)], &theirs = parameters[edge.twin];
+    if (own.size() < 2 || theirs.size() < 2) continue;
+    if (own.size() == 2 && theirs.size() == 2) theirs.insert(theirs.begin() + 1, 0.5 * (other.low + other.high));
+    const auto copy = [](const std::vector<double>& from, double shift, double scale, const ModelEdge& to) {
+      std::vector<double> t(from.size());
+      std::transform(from.begin(), from.end(), t.begin(), [&](double parameter) { return shift + scale * parameter; });
+      if (scale < 0) std::reverse(t.begin(), t.end());
+      t.front() = to.low;
+      t.back() = to.high;
+      return t;
+    };
+    if (own.size() > theirs.size()) {
+      theirs = copy(own, -edge.twin_shift / edge.twin_scale, 1 / edge.twin_scale, other);
+    } else {
+      own = copy(theirs, edge.twin_shift, edge.twin_scale, edge);
+    }
+  }
+}
+
 }  // namespace
 
 std::vector<double> curve_parameters(const ModelEdge& edge, EdgeId id, const SizeField& sizes) {
@@ -238,6 +263,7 @@ Status mesh_curves(const Model& model, const SizeField& sizes, VertexStore& vert
   });
   if (context.should_stop()) return context.stop_error("curve meshes");
   part_single_segments(model, parameters);
+  match_twins(model, parameters);
   mesh.curves.assign(model.edges.size(), CurveMesh());
   for (std::size_t i = 0; i < model.edges.size(); ++i) {
     const EdgeId id(i);

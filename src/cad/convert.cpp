@@ -27,6 +27,7 @@
 #include "cad/loops.h"
 #include "cad/occt_geometry.h"
 #include "geometry/bounds.h"
+#include "geometry/touching_edges.h"
 
 namespace curvetet {
 namespace {
@@ -83,6 +84,7 @@ class Converter {
     }
     if (const auto error = make_solids()) return *error;
     list_faces_of_edges();
+    part_touching_edges(model_);
     return std::move(model_);
   }
 

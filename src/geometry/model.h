@@ -42,6 +42,9 @@ struct ModelEdge {
   double tolerance = 0;                ///< working units
   bool degenerate = false;             ///< a pole: one point in space, a curve only in (u,v)
   std::vector<FaceId> faces;           ///< faces that use it, each once, ascending
+  /// An edge in the same place that the body does not share (see touching_edges.h); both are cut at the same places.
+  EdgeId twin;
+  double twin_shift = 0, twin_scale = 1;  ///< own parameter: shift + scale * that of the twin
 };
 
 /// One use of an edge by a face. A seam has two uses in one face, with two parameter curves.

@@ -174,6 +174,36 @@ TEST(CurveMesh, TurnsWithinTheToleranceAskForNoSegments) {
   EXPECT_LT(curve_parameters(edge, EdgeId(0), sizes).size(), 20U);
 }
 
+TEST(CurveMesh, TwinsAreCutAtTheSamePlaces) {
+  Model model = test::make_boxes({2}, 3, 1);
+  // Any two edges of a length will do; the second runs the other way.
+  EdgeId one, two;
+  for (std::size_t e = 0; e < model.edges.size(); ++e) {
+    const ModelEdge& edge = model.edges[EdgeId(e)];
+    const double length = distance(edge.curve->value(edge.low), edge.curve->value(edge.high));
+    if (std::abs(length - model.frame.length_to_working(3)) > 1e-9) continue;
+    (one.valid() ? two : one) = EdgeId(e);
+  }
+  ASSERT_TRUE(two.valid());
+  const ModelEdge& other = model.edges[one];
+  ModelEdge& edge = model.edges[two];
+  edge.twin = one;
+  edge.twin_scale = -(edge.high - edge.low) / (other.high - other.low);
+  edge.twin_shift = edge.high - edge.twin_scale * other.low;
+  for (const double size : {0.4, 10.0}) {
+    VertexStore vertices;
+    BoundaryMesh mesh;
+    Context context;
+    ASSERT_TRUE(mesh_curves(model, constant_size(model, size), vertices, mesh, context));
+    const std::vector<double>&t = mesh.curves[one].parameters, &own = mesh.curves[two].parameters;
+    ASSERT_EQ(t.size(), own.size());
+    EXPECT_GE(t.size(), 3U) << "their segments must not coincide";
+    for (std::size_t i = 0; i < t.size(); ++i) {
+      EXPECT_NEAR(edge.twin_shift + edge.twin_scale * t[i], own[own.size() - 1 - i], 1e-12);
+    }
+  }
+}
+
 TEST(Front, CancelStops) {
   const Model model = make_ball(1);
   VertexStore vertices;

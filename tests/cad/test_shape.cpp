@@ -16,6 +16,7 @@
 #include <BRep_Tool.hxx>
 #include <GProp_GProps.hxx>
 #include <Geom_Surface.hxx>
+#include <ShapeBuild_ReShape.hxx>
 #include <ShapeCustom.hxx>
 #include <TopExp.hxx>
 #include <TopExp_Explorer.hxx>
@@ -357,6 +358,57 @@ TEST(Shapes, SolidsThatOverlapByAHairAreTold) {
   EXPECT_EQ(model.value().solids.size(), 2U);
   EXPECT_EQ(shared_faces(model.value()), 0U);
   EXPECT_TRUE(has_note(model.value(), "overlaps"));
+}
+
+/// One solid of two boxes that touch along an edge: its ends are shared, the edge itself is not.
+TopoDS_Shape boxes_edge_to_edge() {
+  const TopoDS_Shape one = BRepPrimAPI_MakeBox(1, 1, 1).Shape();
+  const TopoDS_Shape two = BRepPrimAPI_MakeBox(gp_Pnt(1, 1, 0), 1, 1, 1).Shape();
+  TopTools_IndexedMapOfShape ours, theirs;
+  TopExp::MapShapes(one, TopAbs_VERTEX, ours);
+  TopExp::MapShapes(two, TopAbs_VERTEX, theirs);
+  const Handle(ShapeBuild_ReShape) join = new ShapeBuild_ReShape();
+  for (int i = 1; i <= ours.Extent(); ++i) {
+    for (int k = 1; k <= theirs.Extent(); ++k) {
+      const TopoDS_Vertex &a = TopoDS::Vertex(ours(i)), &b = TopoDS::Vertex(theirs(k));
+      if (BRep_Tool::Pnt(a).Distance(BRep_Tool::Pnt(b)) < 1e-9) {
+        join->Replace(b.Oriented(TopAbs_FORWARD), a.Oriented(TopAbs_FORWARD));
+      }
+    }
+  }
+  BRep_Builder builder;
+  TopoDS_Shell shell;
+  builder.MakeShell(shell);
+  for (const TopoDS_Shape& box : {one, join->Apply(two)}) {
+    for (TopExp_Explorer face(box, TopAbs_FACE); face.More(); face.Next()) builder.Add(shell, face.Current());
+  }
+  TopoDS_Solid solid;
+  builder.MakeSolid(solid);
+  builder.Add(solid, shell);
+  return solid;
+}
+
+TEST(Shapes, EdgesInOnePlaceAreKeptApartByAHair) {
+  const Result<Model> result = convert(boxes_edge_to_edge());
+  ASSERT_TRUE(result) << result.error().message;
+  const Model& model = result.value();
+  test::expect_sound(model, "boxes edge to edge");
+  EXPECT_TRUE(has_note(model, "without sharing it"));
+  std::size_t twins = 0;
+  for (const ModelEdge& edge : model.edges) {
+    if (!edge.twin.valid()) continue;
+    ++twins;
+    const ModelEdge& other = model.edges[edge.twin];
+    for (const double s : {0.0, 0.3, 0.5, 1.0}) {
+      const double t = other.low + s * (other.high - other.low);
+      const Vec3 aside = edge.curve->value(edge.twin_shift + edge.twin_scale * t) - other.curve->value(t);
+      EXPECT_LT(norm(aside), 1e-6 * model.diagonal());
+      EXPECT_EQ(norm(aside) > 1e-8 * model.diagonal(), s > 0 && s < 1) << "the ends are shared";
+      // Into its own box, which is above the other one in x and y, or below.
+      EXPECT_GE(aside.x * aside.y, -1e-20);
+    }
+  }
+  EXPECT_EQ(twins, 1U);
 }
 
 TEST(Shapes, WhatCannotBeMeshedIsAnError) {
