@@ -132,7 +132,11 @@ std::string options_json(const Options& o, const Settings& s, const Model& model
   j["radius_edge"] = o.radius_edge;
   j["seed"] = o.seed;
   j["local_sizes"] = nlohmann::ordered_json::array();
-  for (const LocalSize& l : o.local_sizes) j["local_sizes"].push_back({{"which", l.which}, {"size", l.size}});
+  const auto kind = [](LocalSize::Kind k) {
+    return k == LocalSize::Kind::face ? "face" : k == LocalSize::Kind::edge ? "edge" : "solid";
+  };
+  for (const LocalSize& l : o.local_sizes)
+    j["local_sizes"].push_back({{"kind", kind(l.kind)}, {"which", l.which}, {"size", l.size}});
   return j.dump();
 }
 

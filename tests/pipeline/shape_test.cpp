@@ -77,6 +77,24 @@ TEST(MeshOfAShape, KeepsNamesColoursAndUnit) {
   EXPECT_DOUBLE_EQ(result.solids[0].box[5] - result.solids[0].box[2], 300) << "30 cm";
 }
 
+TEST(MeshOfAShape, FollowsTheSizesOfACallback) {
+  const TopoDS_Shape box = BRepPrimAPI_MakeBox(10, 20, 30).Shape();
+  Options options;
+  options.size = 5;
+  Context context;
+  const Result<MeshOutput> plain = mesh(box, options, context);
+  options.unit = "cm";  // what the callback is asked and answers in
+  options.size = 0.5;
+  options.size_callback = [](Point p) { return p[2] < 1 ? 0.15 : 0.5; };
+  const Result<MeshOutput> made = mesh(box, options, context);
+  ASSERT_TRUE(plain && made);
+  EXPECT_TRUE(made.value().report.valid);
+  EXPECT_GT(made.value().report.points, 2 * plain.value().report.points);
+  std::size_t low = 0, high = 0;
+  for (const Point& p : made.value().mesh.points) ++(p[2] < 1 ? low : high);
+  EXPECT_GT(low, 2 * high) << "a third of the body, but finer";
+}
+
 /// Loose faces are sewn, which changes tolerances and merges edges: in a copy.
 TEST(MeshOfAShape, LeavesTheShapeAsItWas) {
   TopoDS_Compound loose;
