@@ -115,6 +115,7 @@ class Run {
     report_fineness(report_, model_, settings_, sizes_, body);
     Mesh mesh = assemble(*body.conjoint, settings_);
     const ValidationReport validation = validate(mesh, &model_, settings_.unit_scale, context_);
+    if (!validation.valid() && context_.should_stop()) return context_.stop_error("validation");
     report_mesh(report_, mesh, validation);
     context_.progress("done", 1);
     return mesh;

@@ -75,7 +75,7 @@ class Improvement {
   }
 
   bool should_stop(std::size_t step) {
-    if (!stopped_ && step % 256 == 0) stopped_ = context_.should_stop();
+    if (!stopped_ && step % 16 == 0) stopped_ = context_.should_stop();
     return stopped_;
   }
 

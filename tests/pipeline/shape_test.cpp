@@ -95,6 +95,28 @@ TEST(MeshOfAShape, FollowsTheSizesOfACallback) {
   EXPECT_GT(low, 2 * high) << "a third of the body, but finer";
 }
 
+TEST(MeshOfAShape, CancelInAnyStageIsNoOtherError) {
+  const TopoDS_Shape block = block_with_bore();
+  std::vector<std::string> stages;
+  Context whole;
+  whole.on_progress = [&](std::string_view stage, double) { stages.emplace_back(stage); };
+  ASSERT_TRUE(mesh(block, Options{}, whole));
+  ASSERT_EQ(stages.back(), "done");
+  stages.pop_back();
+  ASSERT_GT(stages.size(), 8U);
+  for (const std::string& at : stages) {
+    Context context;
+    context.on_progress = [&](std::string_view stage, double) {
+      if (stage == at) context.cancel();
+    };
+    Report report;
+    const Result<MeshOutput> made = mesh(block, Options{}, context, &report);
+    ASSERT_FALSE(made) << at;
+    EXPECT_EQ(made.error().code, ErrorCode::cancelled) << at;
+    EXPECT_FALSE(report.stages.empty()) << "what is finished is kept";
+  }
+}
+
 /// Loose faces are sewn, which changes tolerances and merges edges: in a copy.
 TEST(MeshOfAShape, LeavesTheShapeAsItWas) {
   TopoDS_Compound loose;
