@@ -69,11 +69,11 @@ std::optional<Error> close_solids(CadBody& body, const std::string& source) {
 constexpr std::size_t kSerious = 1000;
 
 /// How bad the faults are: what the mesher cannot survive counts most.
-std::size_t badness(const std::vector<ModelFault>& faults) {
+std::size_t badness(const std::vector<ModelFault>& faults, double diagonal) {
   std::size_t sum = 0;
   for (const ModelFault& fault : faults) {
     const bool distance = fault.kind == ModelFault::Kind::vertex_off || fault.kind == ModelFault::Kind::curve_off;
-    sum += distance ? 1 : kSerious;
+    sum += distance && fault.amount <= CheckOptions{}.largest * diagonal ? 1 : kSerious;
   }
   return sum;
 }
@@ -90,7 +90,7 @@ Attempt attempt(CadBody body, const std::string& source) {
   result.body = std::move(body);
   result.model = convert_body(result.body, source);
   if (result.model) result.faults = check_model(result.model.value());
-  result.bad = result.model ? badness(result.faults) : 1000 * kSerious;
+  result.bad = result.model ? badness(result.faults, result.model.value().diagonal()) : 1000 * kSerious;
   return result;
 }
 
@@ -126,7 +126,7 @@ Error fault_error(const Attempt& result, const std::string& source) {
   std::vector<std::string> entities;
   const ModelFault* first = nullptr;
   for (const ModelFault& fault : result.faults) {
-    if (badness({fault}) < kSerious) continue;
+    if (badness({fault}, result.model.value().diagonal()) < kSerious) continue;
     if (first == nullptr) first = &fault;
     if (entities.size() < 20 && (entities.empty() || entities.back() != fault.entity)) entities.push_back(fault.entity);
   }

@@ -30,7 +30,9 @@ class Checker {
   }
   std::string face_entity(FaceId f) const { return "face " + std::to_string(model_.faces[f].label.cad_id); }
   std::string edge_entity(EdgeId e) const { return "edge " + std::to_string(model_.edges[e].label.cad_id); }
-  double allowed(double tolerance) const { return options_.slack * tolerance + floor_; }
+  double allowed(double tolerance) const {
+    return std::min(options_.slack * tolerance, options_.largest * model_.diagonal()) + floor_;
+  }
 
   bool references_valid() {
     const auto valid_use = [&](const EdgeUse& use) {

@@ -27,9 +27,10 @@ struct ModelFault {
 const char* name(ModelFault::Kind kind);
 
 struct CheckOptions {
-  int samples = 9;      ///< per edge use, ends included
-  double slack = 10;    ///< distances may exceed the tolerances of the entities by this factor
-  double floor = 1e-6;  ///< and by this part of the body's diagonal in any case
+  int samples = 9;        ///< per edge use, ends included
+  double slack = 10;      ///< distances may exceed the tolerances of the entities by this factor
+  double floor = 1e-6;    ///< and by this part of the body's diagonal in any case
+  double largest = 1e-2;  ///< part of the diagonal beyond which no tolerance explains a distance
 };
 
 /// All faults, in the order of solids, faces, edges, vertices; empty when the model is sound.

@@ -8,6 +8,7 @@
 #include <BRepPrimAPI_MakeBox.hxx>
 #include <BRepPrimAPI_MakeSphere.hxx>
 #include <BRep_Builder.hxx>
+#include <TopExp_Explorer.hxx>
 #include <TopoDS.hxx>
 #include <TopoDS_Compound.hxx>
 #include <TopoDS_Edge.hxx>
@@ -133,6 +134,15 @@ TEST(Repair, AnEdgeBeyondTheToleranceOfItsEndsStays) {
   EXPECT_EQ(model.value().vertices.size(), 10U);
   EXPECT_EQ(used_edges(model.value()), 14U);
   test::expect_sound(model.value(), "cube with a short edge");
+}
+
+TEST(Repair, NoToleranceExplainsAVertexFarFromItsEdges) {
+  const TopoDS_Shape box = BRepPrimAPI_MakeBox(1, 1, 1).Shape();
+  const TopoDS_Vertex corner = TopoDS::Vertex(TopExp_Explorer(box, TopAbs_VERTEX).Current());
+  BRep_Builder().UpdateVertex(corner, gp_Pnt(0.3, 0.3, 0.3), 5);
+  const Result<Model> model = convert(box);
+  ASSERT_FALSE(model);
+  EXPECT_EQ(model.error().code, ErrorCode::bad_face) << model.error().message;
 }
 
 /// The loose faces of a bent bar whose two ends touch along an edge: unit cubes around one that is left out.
