@@ -35,6 +35,8 @@ def parse_arguments():
     parser.add_argument("--memory-limit", type=float, default=4, help="GiB of address space for each run; 0: none")
     parser.add_argument("--curvetet", required=True, type=pathlib.Path)
     parser.add_argument("--options", default="", help="further options of `curvetet mesh`, separated by spaces")
+    parser.add_argument("--cad-options", default="", help="options of all commands that read the CAD file, as "
+                        "'--overlaps split'")
     parser.add_argument("--judge", type=pathlib.Path)
     parser.add_argument("--gmsh", action="store_true", help="mesh with gmsh at the same size, too, for comparison")
     parser.add_argument("--out", required=True, type=pathlib.Path)
@@ -107,7 +109,7 @@ class Corpus:
         """Diagonal and None, or None and the cause."""
         if body in self.diagonals:
             return self.diagonals[body], None
-        code, out, err, _ = run([self.a.curvetet, "info", "--json", self.root / body], self.a.time_limit,
+        code, out, err, _ = run([self.a.curvetet, "info", "--json", self.root / body, *self.a.cad_options.split()], self.a.time_limit,
                                 self.a.memory_limit)
         info = read_json(out)
         box = (info or {}).get("box")
@@ -140,7 +142,7 @@ class Corpus:
         for old in (mesh, report):
             old.unlink(missing_ok=True)
         command = [self.a.curvetet, "mesh", self.root / body, "-o", mesh, "--report", report, "--size", repr(size),
-                   "--unit", "mm", "--time-limit", self.a.time_limit, "--curvature", self.a.curvature, "-q", *self.a.options.split()]
+                   "--unit", "mm", "--time-limit", self.a.time_limit, "--curvature", self.a.curvature, "-q", *self.a.cad_options.split(), *self.a.options.split()]
         # The program is to keep the limit by itself; what does not is ended a little later and counted apart.
         code, _, err, row["seconds"] = run(command, 1.2 * self.a.time_limit + 5, self.a.memory_limit)
         document = read_json(report) or {}
@@ -159,7 +161,8 @@ class Corpus:
         return row
 
     def check(self, body, mesh, name, row):
-        code, out, err, row["check_seconds"] = run([self.a.curvetet, "check", "--json", mesh, self.root / body],
+        code, out, err, row["check_seconds"] = run([self.a.curvetet, "check", "--json", mesh, self.root / body,
+                                                    *self.a.cad_options.split()],
                                                    self.a.time_limit, self.a.memory_limit)
         own = read_json(out) or {}
         row["triangles"] = own.get("counts", {}).get("triangles")

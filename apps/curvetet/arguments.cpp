@@ -8,6 +8,7 @@
 #include <charconv>
 #include <filesystem>
 #include <iostream>
+#include <map>
 #include <set>
 
 #include "curvetet/curvetet.h"
@@ -201,6 +202,15 @@ void describe_stages(CLI::App& app, RawMesh& raw, Options& options) {
       ->group(group);
 }
 
+void add_overlaps(CLI::App& app, Overlaps& overlaps) {
+  const std::map<std::string, Overlaps> names{{"refuse", Overlaps::refuse}, {"split", Overlaps::split}};
+  app.add_option("--overlaps", overlaps,
+                 "solids that overlap: refuse (default), or split, so that what they have in common is a solid of its "
+                 "own")
+      ->transform(CLI::CheckedTransformer(names).description(""))
+      ->type_name("MODE");
+}
+
 void describe_units_and_limits(CLI::App& app, RawMesh& raw, Options& options) {
   app.add_option("--unit", options.unit, "unit of the output: um, mm, cm, m, inch, ft; default: mm, or --input-unit")
       ->type_name("UNIT")
@@ -241,6 +251,7 @@ CLI::App* describe_mesh(CLI::App& app, RawMesh& raw, MeshCommand& command) {
                  ".msh: boundary nodes with their parameters as Gmsh's parametric nodes");
   mesh->add_option("--report", command.report, "JSON report, also written when meshing fails")->type_name("FILE");
   mesh->add_flag("--keep-invalid", command.keep_invalid, "write the mesh even if the final check finds it invalid");
+  add_overlaps(*mesh, command.options.overlaps);
   CLI::Option* quiet = mesh->add_flag("-q,--quiet", command.quiet, "say nothing but errors")->option_text(" ");
   mesh->add_flag("-v,--verbose", command.verbose, "say more")->excludes(quiet)->option_text(" ");
   describe_sizes(*mesh, raw, command.options);
@@ -254,7 +265,9 @@ CLI::App* describe_info(CLI::App& app, InfoCommand& command) {
   info->add_option("INPUT", command.input, "STEP, IGES or BREP file")->required()->type_name("FILE");
   info->add_flag("--json", command.json, "as JSON");
   info->add_option("--input-unit", command.input_unit, "unit of an input that carries none (BREP)")->type_name("UNIT");
-  info->add_flag("!--no-isolate", command.isolate, "read the CAD file in this process, not in a helper");
+  add_overlaps(*info, command.overlaps);
+  info->add_flag("!--no-isolate", command.isolate, "read the CAD file in this process, not in a helper")
+      ->option_text(" ");
   return info;
 }
 
@@ -270,7 +283,9 @@ CLI::App* describe_check(CLI::App& app, CheckCommand& command) {
       ->type_name("NUMBER");
   check->add_option("--input-unit", command.input_unit, "unit of a CAD file that carries none (BREP)")
       ->type_name("UNIT");
-  check->add_flag("!--no-isolate", command.isolate, "read the CAD file in this process, not in a helper");
+  add_overlaps(*check, command.overlaps);
+  check->add_flag("!--no-isolate", command.isolate, "read the CAD file in this process, not in a helper")
+      ->option_text(" ");
   check->add_option("--threads", command.threads, "0: all cores")->type_name("NUMBER")->check(CLI::Range(0, 4096));
   return check;
 }

@@ -28,12 +28,14 @@ struct MeshCommand {
 
 struct InfoCommand {
   std::string input, input_unit;
+  Overlaps overlaps = Overlaps::refuse;
   bool json = false, isolate = true;
 };
 
 struct CheckCommand {
   std::string mesh, cad;  ///< cad is empty where the mesh is checked alone
   std::string input_unit;
+  Overlaps overlaps = Overlaps::refuse;
   std::optional<double> unit_scale;
   bool json = false, isolate = true;
   int threads = 0;

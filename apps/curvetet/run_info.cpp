@@ -15,6 +15,7 @@ int run_info(const InfoCommand& command) {
   LoadOptions options;
   options.input_unit = command.input_unit;
   options.isolate = command.isolate;
+  options.overlaps = command.overlaps;
   const Result<Model> model = load_model(command.input, options, context);
   if (!model) return show_error(model.error());
   const Result<std::string> text = describe_model(model.value(), command.json);

@@ -20,6 +20,9 @@ struct LocalSize {
 
 enum class RecoveryMode { conjoint, paper };
 
+/// What is done with solids that overlap: refused, or split so that what they have in common is a solid of its own.
+enum class Overlaps { refuse, split };
+
 struct Options {
   std::optional<double> size;          ///< largest edge length; default: a tenth of the body's diagonal
   std::optional<double> min_size;      ///< floor of derived sizes; default: a thousandth of the size
@@ -31,7 +34,8 @@ struct Options {
   std::function<double(Point)> size_callback;
 
   std::string unit;  ///< of the output: "um", "mm", "cm", "m", "inch", "ft"; default: mm, or `input_unit` if given
-  std::string input_unit;   ///< of BREP files and shapes in memory, which carry none; default: mm
+  std::string input_unit;  ///< of BREP files and shapes in memory, which carry none; default: mm
+  Overlaps overlaps = Overlaps::refuse;
   bool isolate_cad = true;  ///< read and heal in a helper process
 
   RecoveryMode recovery = RecoveryMode::conjoint;

@@ -1,6 +1,7 @@
 // Two meshes of one place cross each other, so solids that touch must have the touching part in common. Boxes of faces
 // tell cheaply that nothing touches. Fusing was kept away from single solids: the kernel's result is only trusted where
-// every solid comes out as one, of the same volume.
+// every solid keeps its volume. Solids that overlap are not given to one of their owners: each would then lack a
+// part of its boundary; what is common is a cell of its own, and the user says whose it is.
 #include "cad/fuse.h"
 
 #include <BOPAlgo_Builder.hxx>
@@ -54,7 +55,7 @@ class Fuse {
  public:
   explicit Fuse(CadBody& body) : body_(body), solids_(sub_shapes(body.shape, TopAbs_SOLID)), history_(body, builder_) {}
 
-  Fusing run() {
+  Fusing run(Overlaps overlaps) {
     builder_.SetNonDestructive(true);
     builder_.SetUseOBB(true);
     for (int s = 1; s <= solids_.Extent(); ++s) {
@@ -64,10 +65,11 @@ class Fuse {
     builder_.Perform();
     if (builder_.HasErrors()) return fail("solids that touch could not be fused: the CAD kernel failed");
     if (!anything_changed()) return Fusing::apart;
-    const auto overlap = overlapping_solid();
-    if (overlap != 0) {
-      return fail("solids that touch are not fused: solid " +
-                  std::to_string(body_.solids[static_cast<std::size_t>(overlap - 1)].cad_id) + " overlaps another one");
+    if (const auto overlap = overlaps == Overlaps::refuse ? overlapping_solid() : 0; overlap != 0) {
+      return fail("solids that touch are not fused: " + name_of(overlap) + " overlaps another one");
+    }
+    if (const auto changed = changed_solid(); changed != 0) {
+      return fail("solids that touch are not fused: " + name_of(changed) + " would change its volume");
     }
     replace();
     return Fusing::imprinted;
@@ -80,7 +82,8 @@ class Fuse {
   }
 
   bool anything_changed() {
-    for (const TopAbs_ShapeEnum type : {TopAbs_FACE, TopAbs_EDGE, TopAbs_VERTEX}) {
+    // A solid that lies in another one splits that one, but none of its parts.
+    for (const TopAbs_ShapeEnum type : {TopAbs_SOLID, TopAbs_FACE, TopAbs_EDGE, TopAbs_VERTEX}) {
       const TopTools_IndexedMapOfShape parts = sub_shapes(body_.shape, type);
       for (int i = 1; i <= parts.Extent(); ++i) {
         if (!builder_.Modified(history_.elementary(parts(i))).IsEmpty()) return true;
@@ -89,16 +92,30 @@ class Fuse {
     return false;
   }
 
-  /// The first solid that does not come out as one solid of its own with the same volume; 0 if there is none.
+  std::string name_of(int solid) const {
+    return "solid " + std::to_string(body_.solids[static_cast<std::size_t>(solid - 1)].cad_id);
+  }
+
+  /// The first solid that does not come out as one cell of its own; 0 if there is none.
   int overlapping_solid() {
     TopTools_IndexedMapOfShape taken;
     for (int s = 1; s <= solids_.Extent(); ++s) {
       const TopTools_ListOfShape list = history_.images(solids_(s));
-      if (list.Extent() != 1 || list.First().ShapeType() != TopAbs_SOLID) return s;
       const int known = taken.Extent();
-      if (taken.Add(list.First()) <= known) return s;
-      const double before = std::abs(volume_of(history_.elementary(solids_(s)))),
-                   after = std::abs(volume_of(list.First()));
+      if (list.Extent() != 1 || taken.Add(list.First()) <= known) return s;
+    }
+    return 0;
+  }
+
+  /// The first solid whose cells are no solids, or do not add up to its volume; 0 if there is none.
+  int changed_solid() {
+    for (int s = 1; s <= solids_.Extent(); ++s) {
+      const double before = std::abs(volume_of(history_.elementary(solids_(s))));
+      double after = 0;
+      for (const TopoDS_Shape& cell : history_.images(solids_(s))) {
+        if (cell.ShapeType() != TopAbs_SOLID) return s;
+        after += std::abs(volume_of(cell));
+      }
       if (!(std::abs(after - before) <= kVolume * before)) return s;
     }
     return 0;
@@ -109,11 +126,42 @@ class Fuse {
     TopoDS_Compound compound;
     BRep_Builder builder;
     builder.MakeCompound(compound);
-    for (int s = 1; s <= solids_.Extent(); ++s) builder.Add(compound, history_.images(solids_(s)).First());
+    TopTools_IndexedMapOfShape cells;
+    std::vector<std::vector<int>> owners;  // of each cell
+    for (int s = 1; s <= solids_.Extent(); ++s) {
+      for (const TopoDS_Shape& cell : history_.images(solids_(s))) {
+        const auto at = static_cast<std::size_t>(cells.Add(cell)) - 1;
+        if (at == owners.size()) {
+          builder.Add(compound, cell);
+          owners.emplace_back();
+        }
+        owners[at].push_back(s);
+      }
+    }
     for (TopExp_Explorer it(body_.shape, TopAbs_FACE, TopAbs_SOLID); it.More(); it.Next()) {
       builder.Add(compound, history_.elementary(it.Current()));
     }
+    const std::vector<Label> before = body_.solids;
     replace_shape(body_, compound, [&](const TopoDS_Shape& part) { return history_.image(part); });
+    const TopTools_IndexedMapOfShape after = sub_shapes(compound, TopAbs_SOLID);
+    for (std::size_t c = 0; c < owners.size(); ++c) {
+      if (owners[c].size() < 2) continue;
+      name_common(body_.solids[static_cast<std::size_t>(after.FindIndex(cells(static_cast<int>(c) + 1))) - 1],
+                  owners[c], before);
+    }
+  }
+
+  /// Names a cell after the solids that have it in common.
+  void name_common(Label& cell, const std::vector<int>& owners, const std::vector<Label>& solids) {
+    std::string ids;
+    cell.name.clear();
+    for (const int s : owners) {
+      const Label& owner = solids[static_cast<std::size_t>(s - 1)];
+      const std::string id = std::to_string(owner.cad_id);
+      ids += (ids.empty() ? "solid " : " and solid ") + id;
+      cell.name += (cell.name.empty() ? "" : " & ") + (owner.name.empty() ? "solid_" + id : owner.name);
+    }
+    body_.notes.push_back({"solid " + std::to_string(cell.cad_id), "is what " + ids + " have in common"});
   }
 
   CadBody& body_;
@@ -124,10 +172,12 @@ class Fuse {
 
 }  // namespace
 
-Fusing fuse_touching(CadBody& body) {
+Fusing fuse_touching(CadBody& body, Overlaps overlaps) {
   const TopTools_IndexedMapOfShape solids = sub_shapes(body.shape, TopAbs_SOLID);
-  if (solids.Extent() < 2 || !may_touch(solids)) return Fusing::apart;
-  return Fuse(body).run();
+  if (solids.Extent() < 2) return Fusing::apart;
+  // A solid may lie in another one without a face near a face.
+  if (overlaps == Overlaps::refuse && !may_touch(solids)) return Fusing::apart;
+  return Fuse(body).run(overlaps);
 }
 
 }  // namespace curvetet

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "cad/body.h"
+#include "curvetet/options.h"
 
 namespace curvetet {
 
@@ -16,6 +17,8 @@ enum class Fusing {
 /// stays one solid with its volume. Labels follow by the fuse's history: the first part of an entity keeps its id, the
 /// others get free ids and its name and colour; of entities that coincide the first lends its label. Notes tell which
 /// faces were split and which coincide.
-Fusing fuse_touching(CadBody& body);
+/// Solids that overlap are a failure, or with Overlaps::split cut into the cells they form: the part that two have in
+/// common becomes a solid of its own, named after both; the volumes of a solid's cells add up to its own.
+Fusing fuse_touching(CadBody& body, Overlaps overlaps);
 
 }  // namespace curvetet

@@ -110,9 +110,9 @@ void fix_shape(CadBody& body) {
 }
 
 /// Imprints and merges solids that touch; the result is kept unless it is worse.
-void fuse(Attempt& best, const std::string& source) {
+void fuse(Attempt& best, const std::string& source, Overlaps overlaps) {
   CadBody fused = best.body;
-  const Fusing outcome = fuse_touching(fused);
+  const Fusing outcome = fuse_touching(fused, overlaps);
   if (outcome == Fusing::failed) best.model.value().healing.push_back(fused.notes.back());
   if (outcome != Fusing::imprinted) {
     best.body.notes = std::move(fused.notes);
@@ -145,7 +145,7 @@ Error fault_error(const Attempt& result, const std::string& source) {
 
 }  // namespace
 
-Result<Model> heal_and_convert(CadBody& body, const std::string& source) {
+Result<Model> heal_and_convert(CadBody& body, const std::string& source, Overlaps overlaps) {
   const QuietMessages quiet;
   return guarded(ErrorCode::reader_failed, "cannot repair the shape in " + source, [&]() -> Result<Model> {
     if (const auto error = close_solids(body, source)) return *error;
@@ -159,8 +159,10 @@ Result<Model> heal_and_convert(CadBody& body, const std::string& source) {
     }
     if (!best.model) return best.model.error();
     if (best.bad >= kSerious) return fault_error(best, source);
-    if (const auto error = find_overlap(best.body, source)) return *error;
-    fuse(best, source);
+    if (overlaps == Overlaps::refuse) {
+      if (const auto error = find_overlap(best.body, source)) return *error;
+    }
+    fuse(best, source, overlaps);
     body = std::move(best.body);
     for (const ModelFault& fault : best.faults) {
       const HealingNote note{fault.entity, fault.what + " (left as it is)"};

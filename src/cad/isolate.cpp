@@ -41,6 +41,7 @@ constexpr const char* kHelperVariable = "CURVETET_CAD_HELPER";
 /// A busy machine must not fail a body that an idle one reads: processor time counts, the clock only stops what sleeps.
 constexpr double kClockFactor = 4;
 constexpr const char* kHelperFlag = "--cad-helper";
+constexpr const char *kRefuse = "refuse", *kSplit = "split";  // Overlaps
 
 /// A folder of our own that vanishes with its contents.
 class TemporaryFolder {
@@ -179,8 +180,9 @@ Result<CadBody> read_isolated(const std::string& path, const std::string& helper
   if (folder.path().empty()) return Error{ErrorCode::output_unwritable, "cannot make a temporary folder"};
   const std::string out_path = folder.path() + "/shape.bin";
   const double allowed = options.isolate_time_limit;
-  Child child(helper, {helper, kHelperFlag, path, out_path, options.input_unit,
-                       std::to_string(options.isolate_memory_limit), std::to_string(allowed)});
+  Child child(helper,
+              {helper, kHelperFlag, path, out_path, options.input_unit, std::to_string(options.isolate_memory_limit),
+               std::to_string(allowed), options.overlaps == Overlaps::split ? kSplit : kRefuse});
   if (!child.started()) return Error{ErrorCode::bad_option, "cannot start the helper program " + helper};
   const auto start = Clock::now();
   auto pause = std::chrono::milliseconds(1);
@@ -209,13 +211,14 @@ Result<CadBody> read_isolated(const std::string& path, const std::string& helper
 
 int run_cad_helper(int argc, char** argv) {
   constexpr int kUsage = 2, kUnwritable = 3;
-  if (argc != 7 || std::string(argv[1]) != kHelperFlag) return kUsage;
+  if (argc != 8 || std::string(argv[1]) != kHelperFlag) return kUsage;
   const std::string path = argv[2], out_path = argv[3], unit = argv[4];
   limit_this_process(std::strtoull(argv[5], nullptr, 10), std::strtod(argv[6], nullptr));
   if (!announce_transfer(out_path)) return kUnwritable;
   Result<CadBody> body = read_body(path, unit);
   if (!body) return write_transfer(body.error(), out_path) ? 0 : kUnwritable;
-  const Result<Model> model = heal_and_convert(body.value(), path);
+  const Result<Model> model =
+      heal_and_convert(body.value(), path, argv[7] == std::string(kSplit) ? Overlaps::split : Overlaps::refuse);
   const bool written = model ? write_transfer(body.value(), out_path) : write_transfer(model.error(), out_path);
   return written ? 0 : kUnwritable;
 }

@@ -6,13 +6,15 @@
 
 #include "base/context.h"
 #include "base/error.h"
+#include "curvetet/options.h"
 #include "geometry/model.h"
 
 namespace curvetet {
 
 struct LoadOptions {
   std::string input_unit;  ///< for files that carry no unit: "mm", "cm", "m", "inch"; empty: mm
-  bool isolate = true;     ///< read and heal in a helper process, so that a crash or a loop there becomes a message
+  Overlaps overlaps = Overlaps::refuse;
+  bool isolate = true;  ///< read and heal in a helper process, so that a crash or a loop there becomes a message
   double isolate_time_limit = 60;                            ///< seconds
   std::size_t isolate_memory_limit = std::size_t{4} << 30U;  ///< bytes
   std::string helper;  ///< program that serves as helper ("curvetet" itself); empty: this executable

@@ -127,7 +127,7 @@ std::optional<Error> find_overlap(const CadBody& body, const std::string& source
                        "solids " + label(i) + " and " + label(j) + " of " + source + " overlap",
                        {"solid " + label(i), "solid " + label(j)},
                        to_vec(point.XYZ()),
-                       "cut one solid out of the other in the CAD system"};
+                       "cut one solid out of the other in the CAD system, or let them be split (--overlaps split)"};
         }
       }
     }

@@ -14,6 +14,7 @@ namespace curvetet {
 struct ShapeOptions {
   std::string unit = "mm";  ///< of the shape's coordinates
   ShapeLabels labels;
+  Overlaps overlaps = Overlaps::refuse;
 };
 
 /// Ids are those of TopExp::MapShapes on the shape. Repairs, where the shape needs any, run in this process, on a copy:

@@ -126,6 +126,7 @@ std::string options_json(const Options& o, const Settings& s, const Model& model
   j["chord_height"] = o.chord_height ? nlohmann::ordered_json(*o.chord_height) : nlohmann::ordered_json();
   j["grading"] = o.grading;
   j["gaps"] = o.gaps;
+  j["overlaps"] = o.overlaps == Overlaps::split ? "split" : "refuse";
   j["recovery"] = o.recovery == RecoveryMode::paper ? "paper" : "conjoint";
   j["refine_interior"] = o.refine_interior;
   j["improve"] = o.improve;

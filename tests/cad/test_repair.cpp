@@ -19,6 +19,7 @@
 #include <TopoDS_Wire.hxx>
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <map>
 #include <vector>
 
@@ -28,9 +29,11 @@
 namespace curvetet {
 namespace {
 
-Result<Model> convert(const TopoDS_Shape& shape) {
+Result<Model> convert(const TopoDS_Shape& shape, Overlaps overlaps = Overlaps::refuse) {
   Context context;
-  return model_from_shape(shape, ShapeOptions{}, context);
+  ShapeOptions options;
+  options.overlaps = overlaps;
+  return model_from_shape(shape, options, context);
 }
 
 TopoDS_Compound compound_of(const std::vector<TopoDS_Shape>& shapes) {
@@ -180,17 +183,45 @@ TEST(Repair, ABodyThatTouchesItselfAlongAnEdgeIsSewn) {
   test::expect_sound(model.value(), "bar that touches itself");
 }
 
+/// A box, and solids that cross a corner of it, run through it, and lie in it.
+const TopoDS_Shape& box() {
+  static const TopoDS_Shape shape = BRepPrimAPI_MakeBox(4, 4, 4).Shape();
+  return shape;
+}
+std::vector<TopoDS_Shape> intruders() {
+  return {BRepPrimAPI_MakeBox(gp_Pnt(3, 3, 3), 4, 4, 4).Shape(), BRepPrimAPI_MakeBox(gp_Pnt(1, 1, -1), 1, 1, 6).Shape(),
+          BRepPrimAPI_MakeBox(gp_Pnt(1, 1, 1), 2, 2, 2).Shape()};
+}
+
+TEST(Repair, OverlappingSolidsAreSplitOnRequest) {
+  const std::vector<double> common{1, 4, 8}, all{127, 66, 64};
+  const std::vector<std::size_t> solids{3, 4, 2};
+  for (std::size_t i = 0; i < common.size(); ++i) {
+    const Result<Model> result = convert(compound_of({box(), intruders()[i]}), Overlaps::split);
+    ASSERT_TRUE(result) << i << ": " << result.error().message;
+    const Model& model = result.value();
+    test::expect_sound(model, "overlapping solids");
+    EXPECT_EQ(model.solids.size(), solids[i]);
+    EXPECT_NEAR(test::total_volume(model), all[i], 1e-6);
+    std::size_t shared = 0;
+    for (const ModelSolid& solid : model.solids) {
+      if (solid.label.name != "solid_1 & solid_2") continue;
+      ++shared;
+      EXPECT_NEAR(solid.volume * std::pow(model.frame.length_to_cad(1), 3), common[i], 1e-6);
+    }
+    EXPECT_EQ(shared, 1U) << i;
+  }
+}
+
 TEST(Repair, OverlappingSolidsAreRefused) {
   const auto error_of = [](const std::vector<TopoDS_Shape>& solids) {
     const Result<Model> model = convert(compound_of(solids));
     return model ? Error{} : model.error();
   };
-  const TopoDS_Shape box = BRepPrimAPI_MakeBox(4, 4, 4).Shape();
-  const std::vector<TopoDS_Shape> intruders{BRepPrimAPI_MakeBox(gp_Pnt(3, 3, 3), 4, 4, 4).Shape(),
-                                            BRepPrimAPI_MakeBox(gp_Pnt(1, 1, -1), 1, 1, 6).Shape(),
-                                            BRepPrimAPI_MakeSphere(gp_Pnt(2, 2, 2), 1).Shape()};
-  for (const TopoDS_Shape& intruder : intruders) {
-    const Error error = error_of({box, intruder});
+  std::vector<TopoDS_Shape> all = intruders();
+  all.push_back(BRepPrimAPI_MakeSphere(gp_Pnt(2, 2, 2), 1).Shape());
+  for (const TopoDS_Shape& intruder : all) {
+    const Error error = error_of({box(), intruder});
     EXPECT_EQ(error.code, ErrorCode::overlapping_solids) << error.message;
     EXPECT_EQ(error.entities, (std::vector<std::string>{"solid 1", "solid 2"}));
     ASSERT_TRUE(error.where.has_value());
@@ -198,9 +229,8 @@ TEST(Repair, OverlappingSolidsAreRefused) {
 }
 
 TEST(Repair, SolidsApartAreNot) {
-  const TopoDS_Shape box = BRepPrimAPI_MakeBox(4, 4, 4).Shape();
-  EXPECT_TRUE(convert(compound_of({box, BRepPrimAPI_MakeBox(gp_Pnt(5, 3, 3), 4, 4, 4).Shape()})));
-  EXPECT_TRUE(convert(compound_of({box, BRepPrimAPI_MakeBox(gp_Pnt(4, 1, 1), 2, 2, 2).Shape()}))) << "they touch";
+  EXPECT_TRUE(convert(compound_of({box(), BRepPrimAPI_MakeBox(gp_Pnt(5, 3, 3), 4, 4, 4).Shape()})));
+  EXPECT_TRUE(convert(compound_of({box(), BRepPrimAPI_MakeBox(gp_Pnt(4, 1, 1), 2, 2, 2).Shape()}))) << "they touch";
 }
 
 }  // namespace
