@@ -48,6 +48,8 @@ std::string as_json(const Mesh& mesh, const ValidationReport& report) {
          {number(quality.worst_place[0]), number(quality.worst_place[1]), number(quality.worst_place[2])}},
         {"tets_below_half_degree", quality.below_half_degree},
         {"tets_below_five_degrees", quality.below_five_degrees},
+        {"forced_below_half_degree", quality.forced_below_half},
+        {"forced_below_five_degrees", quality.forced_below_five},
         {"mean_radius_ratio", number(quality.radius_ratio.mean)},
         {"radius_ratio_histogram", quality.radius_ratio.bins},
         {"dihedral_histogram", quality.dihedral.bins}}},
@@ -69,9 +71,11 @@ std::string as_words(const Mesh& mesh, const ValidationReport& report) {
   }
   const Point& worst = report.quality.worst_place;
   if (!mesh.tets.empty()) {
-    text +=
-        fmt::format("worst dihedral angle {:.3f} degrees at ({:.6g}, {:.6g}, {:.6g}); {} tetrahedra below 5 degrees\n",
-                    report.quality.worst_dihedral, worst[0], worst[1], worst[2], report.quality.below_five_degrees);
+    text += fmt::format(
+        "worst dihedral angle {:.3f} degrees at ({:.6g}, {:.6g}, {:.6g}); {} tetrahedra below 5 degrees, {} of "
+        "them by the body's own angles\n",
+        report.quality.worst_dihedral, worst[0], worst[1], worst[2], report.quality.below_five_degrees,
+        report.quality.forced_below_five);
   }
   return text + (report.valid() ? "valid\n" : "NOT VALID\n");
 }

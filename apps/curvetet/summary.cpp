@@ -2,6 +2,7 @@
 #include "summary.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
@@ -40,6 +41,27 @@ std::string solid_lines(const Report& report) {
   }
   if (report.solids.size() > kMostLines)
     text += line("", fmt::format("and {} more solids", report.solids.size() - kMostLines));
+  return text;
+}
+
+std::string ids(const char* one, const char* many, const std::vector<std::uint32_t>& ids) {
+  return fmt::format("{} {}", ids.size() == 1 ? one : many, fmt::join(ids, ", "));
+}
+
+/// Small angles that are the body's own; nothing if there are none.
+std::string forced_lines(const Report& report) {
+  std::string text;
+  for (std::size_t i = 0; i < std::min(report.forced_angles.size(), kMostLines); ++i) {
+    const ForcedAngleReport& f = report.forced_angles[i];
+    const std::string where = f.vertex != 0 ? fmt::format("at vertex {} of {}", f.vertex, ids("face", "faces", f.faces))
+                                            : "along " + ids("edge", "edges", f.edges);
+    text += line(
+        i == 0 ? "forced" : "",
+        fmt::format("{} of them by the body: {} meet at {:.2f} degrees {}", f.tets,
+                    f.vertex != 0 ? ids("edge", "edges", f.edges) : ids("face", "faces", f.faces), f.angle, where));
+  }
+  if (report.forced_angles.size() > kMostLines)
+    text += line("", fmt::format("and {} more; see the report", report.forced_angles.size() - kMostLines));
   return text;
 }
 
@@ -85,6 +107,7 @@ std::string summary(const Report& report) {
   text +=
       line("worst dihedral", fmt::format("{:.2f} degrees at {}; {} tetrahedra below 5 degrees", report.worst_dihedral,
                                          place(report.worst_place), report.tets_below_five_degrees));
+  text += forced_lines(report);
   text += reduction_lines(report);
   text += line("rounds", report.rounds == 0 ? "0: no restart with smaller sizes was needed"
                                             : fmt::format("{} restart{} with smaller sizes", report.rounds,

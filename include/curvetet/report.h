@@ -46,6 +46,16 @@ struct ReductionReport {
   Point where{};
 };
 
+/// A small dihedral angle that the body itself forces on every mesh of it: two faces that meet in a thin wedge along an
+/// edge, or two edges of a face that meet in one at a vertex.
+struct ForcedAngleReport {
+  std::vector<std::uint32_t> faces, edges;  ///< cad ids
+  std::uint32_t vertex = 0;                 ///< cad id of the corner; 0 for a wedge
+  double angle = 0;                         ///< degrees
+  std::size_t tets = 0;                     ///< below five degrees because of it
+  Point where{};
+};
+
 /// Counts of recovery as a whole; those of the paper's remeshing cases are of `--recovery paper` only.
 struct RecoveryCounts {
   std::size_t crossings = 0;  ///< pairs of triangles of the first t_3d that crossed
@@ -74,7 +84,9 @@ struct Report {
   std::size_t unmet_tets = 0;
   double worst_dihedral = 0;
   Point worst_place{};
-  std::size_t tets_below_half_degree = 0, tets_below_five_degrees = 0;
+  std::size_t tets_below_half_degree = 0, tets_below_five_degrees = 0;  ///< all, forced or not
+  std::size_t forced_below_half_degree = 0, forced_below_five_degrees = 0;
+  std::vector<ForcedAngleReport> forced_angles;
   double mean_radius_ratio = 0;
   std::vector<std::size_t> radius_ratio_histogram, dihedral_histogram;
   std::vector<std::string> warnings;

@@ -56,6 +56,11 @@ bool flat(const Corner& a, const Corner& b, const Corner& c) {
   return std::abs(cross(r, s)) <= kFlat * std::max({norm2(r), norm2(s), norm2(s - r)});
 }
 
+/// Upright on the surface at its corners.
+bool upright(const Corner& a, const Corner& b, const Corner& c) {
+  return !degenerate(a, b, c) && alignment(a, b, c) < kUpright;
+}
+
 using Property = bool (*)(const Corner&, const Corner&, const Corner&);
 
 /// How many of two triangles have a property.
@@ -150,10 +155,14 @@ bool off_chord(Vec3 offset, Vec3 chord) {
   return std::abs(dot(offset, chord)) > 0.5 * length * length + kNoLength * length;
 }
 
-bool flip_improves(const Corner& a, const Corner& b, const Corner& c, const Corner& d) {
+bool flip_improves(const Corner& a, const Corner& b, const Corner& c, const Corner& d, FlipOrder order) {
   if (c.vertex == d.vertex) return false;
   const int flat_now = count(flat, a, b, c, b, a, d), flat_then = count(flat, a, d, c, d, b, c);
   if (flat_then != flat_now) return flat_then < flat_now;
+  if (order == FlipOrder::upright_first) {
+    const int upright_now = count(upright, a, b, c, b, a, d), upright_then = count(upright, a, d, c, d, b, c);
+    if (upright_then != upright_now) return upright_then < upright_now;
+  }
   const bool bent_then = bent(c, d), bent_now = bent(a, b);
   if (bent_then && bent_now) return arc_estimate(c, d) < (1 - kFlipMargin) * arc_estimate(a, b);
   if (bent_then != bent_now) return bent_now;
@@ -236,7 +245,7 @@ FaceMesh::FlipWanted spatial_criterion(const FaceMesh& mesh, const VertexStore& 
   };
   return [corner](NodeId a, NodeId b, NodeId c, NodeId d) {
     corner(NodeId(std::max({a.value(), b.value(), c.value(), d.value()})));  // no resizing below: references stay good
-    return flip_improves(corner(a), corner(b), corner(c), corner(d));
+    return flip_improves(corner(a), corner(b), corner(c), corner(d), FlipOrder::upright_first);
   };
 }
 

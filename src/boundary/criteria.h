@@ -3,6 +3,7 @@
 #pragma once
 
 #include <array>
+#include <cstdint>
 #include <optional>
 
 #include "base/ids.h"
@@ -40,10 +41,16 @@ bool bent(const Corner& a, const Corner& b);
 /// Whether a curve whose middle is at `offset` from the middle of its chord is far from being its picture.
 bool off_chord(Vec3 offset, Vec3 chord);
 
+/// What comes first where a flip cures the one and brings the other. While triangles are large, an edge that wraps
+/// around the surface makes everything next to it upright, and only edges that do not wrap lead out of that. Once they
+/// have their size, an upright triangle crosses its neighbours or other faces, and an edge that is bent in the chart
+/// does no harm: close to a pole, where the chart turns, there is none that is not.
+enum class FlipOrder : std::uint8_t { bends_first, upright_first };
+
 /// Whether triangles (a,b,c) and (b,a,d) should become (a,d,c) and (d,b,c). In order: fewer flat
-/// triangles, no bent edge, fewer degenerate ones, fewer that oppose the surface's normal, then Delaunay in space
-/// (angles at c and d exceed two right ones, with a margin).
-bool flip_improves(const Corner& a, const Corner& b, const Corner& c, const Corner& d);
+/// triangles, no bent edge and fewer upright triangles (in this or the other order), fewer degenerate ones, fewer that
+/// oppose the surface's normal, then Delaunay in space (angles at c and d exceed two right ones, with a margin).
+bool flip_improves(const Corner& a, const Corner& b, const Corner& c, const Corner& d, FlipOrder order);
 
 /// Radius of the smallest sphere through three points; infinite for collinear ones.
 double circumradius(Vec3 a, Vec3 b, Vec3 c);

@@ -57,7 +57,7 @@ class FaceRefiner {
     }
     measure_segments();
     wanted_ = [this](NodeId a, NodeId b, NodeId c, NodeId d) {
-      return flip_improves(corner(a), corner(b), corner(c), corner(d));
+      return flip_improves(corner(a), corner(b), corner(c), corner(d), order_);
     };
   }
 
@@ -66,6 +66,7 @@ class FaceRefiner {
     enqueue(alive());
     empty_queue(context);
     // Flips that the chart forbade while triangles were large have become legal meanwhile.
+    order_ = FlipOrder::upright_first;
     for (int round = 0; round < kLastRounds && !context.should_stop(); ++round) {
       mesh_.restore(alive(), wanted_, changed_);
       if (changed_.empty()) break;
@@ -310,6 +311,7 @@ class FaceRefiner {
   const Surface& surface_;
   const SizeField& sizes_;
   FaceMesh::FlipWanted wanted_;
+  FlipOrder order_ = FlipOrder::bends_first;
   double usual_segment_ = 0;
   std::vector<Corner> corners_;        ///< by node
   std::vector<double> size_at_;        ///< by node

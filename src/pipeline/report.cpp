@@ -85,11 +85,25 @@ Json error_json(const Error& error) {
           {"hint", error.hint}};
 }
 
+Json forced_angle_json(const ForcedAngleReport& forced) {
+  return {{"faces", forced.faces},
+          {"edges", forced.edges},
+          {"vertex", forced.vertex == 0 ? Json() : Json(forced.vertex)},
+          {"angle", number(forced.angle)},
+          {"tets", forced.tets},
+          {"where", place(forced.where)}};
+}
+
 Json quality_json(const Report& report) {
+  Json forced = Json::array();
+  for (const ForcedAngleReport& f : report.forced_angles) forced.push_back(forced_angle_json(f));
   return {{"worst_dihedral", number(report.worst_dihedral)},
           {"worst_place", place(report.worst_place)},
           {"tets_below_half_degree", report.tets_below_half_degree},
           {"tets_below_five_degrees", report.tets_below_five_degrees},
+          {"forced_below_half_degree", report.forced_below_half_degree},
+          {"forced_below_five_degrees", report.forced_below_five_degrees},
+          {"forced_angles", forced},
           {"unmet_tets", report.unmet_tets},
           {"mean_radius_ratio", number(report.mean_radius_ratio)},
           {"radius_ratio_histogram", report.radius_ratio_histogram},

@@ -94,6 +94,17 @@ FaceReport face_report(const Model& model, const BodyMesh& body, FaceId face, co
   return r;
 }
 
+ForcedAngleReport forced_report(const Mesh& mesh, const ForcedAngle& forced) {
+  ForcedAngleReport r;
+  for (std::uint32_t f : forced.faces) r.faces.push_back(mesh.faces[f].cad_id);
+  for (std::uint32_t e : forced.edges) r.edges.push_back(mesh.edges[e].cad_id);
+  if (forced.vertex) r.vertex = mesh.vertices[*forced.vertex].cad_id;
+  r.angle = forced.angle;
+  r.tets = forced.tets;
+  r.where = forced.place;
+  return r;
+}
+
 }  // namespace
 
 void report_input(Report& report, const Model& model, const Settings& settings, const Options& options) {
@@ -182,6 +193,9 @@ void report_mesh(Report& report, const Mesh& mesh, const ValidationReport& valid
   report.worst_place = validation.quality.worst_place;
   report.tets_below_half_degree = validation.quality.below_half_degree;
   report.tets_below_five_degrees = validation.quality.below_five_degrees;
+  report.forced_below_half_degree = validation.quality.forced_below_half;
+  report.forced_below_five_degrees = validation.quality.forced_below_five;
+  for (const ForcedAngle& f : validation.quality.forced) report.forced_angles.push_back(forced_report(mesh, f));
   report.mean_radius_ratio = validation.quality.radius_ratio.mean;
   report.radius_ratio_histogram = validation.quality.radius_ratio.bins;
   report.dihedral_histogram = validation.quality.dihedral.bins;

@@ -100,5 +100,8 @@ void check_against_model(const Mesh& mesh, const Model& model, double unit_scale
 /// Volume of each solid entity, in the mesh's unit.
 std::vector<double> solid_volumes(const Mesh& mesh);
 QualitySummary summarize_quality(const Mesh& mesh, Context& context);
+/// Tells which of the tets below five degrees the body itself forces; fills that part of the summary. Without a model
+/// the mesh's own angles are taken for the body's.
+void find_forced_angles(const Mesh& mesh, const Model* model, double unit_scale, QualitySummary& summary);
 
 }  // namespace curvetet::checks

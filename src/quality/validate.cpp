@@ -152,6 +152,7 @@ ValidationReport validate(const Mesh& mesh, const Model* model, double unit_scal
     if (stopped()) return report;
     report.solid_volumes = solid_volumes(mesh);
     report.quality = summarize_quality(mesh, context);
+    if (report.quality.below_five_degrees > 0) find_forced_angles(mesh, model, unit_scale, report.quality);
     if (model != nullptr) {
       check_against_model(mesh, *model, unit_scale, topology, report.solid_volumes, context, findings);
     }

@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -28,10 +29,23 @@ struct Histogram {
   std::vector<std::size_t> bins;  ///< equal width over [0, 1] or [0, 180]
 };
 
+/// A small dihedral angle that every mesh of the body must have: faces that meet in a thin wedge along an edge, or two
+/// edges of a face that meet in one at a vertex. Fields are entities of the mesh, ascending.
+struct ForcedAngle {
+  std::vector<std::uint32_t> faces;     ///< the two of the wedge, or the one with the corner
+  std::vector<std::uint32_t> edges;     ///< the one of the wedge, or the two that meet
+  std::optional<std::uint32_t> vertex;  ///< of the corner
+  double angle = 0;                     ///< the smallest met, degrees
+  Point place{};                        ///< where that is
+  std::size_t tets = 0;                 ///< below five degrees because of it
+};
+
 struct QualitySummary {
-  Histogram radius_ratio;  ///< 3 r / R in [0,1]
-  Histogram dihedral;      ///< smallest angle of each tet, degrees
-  std::size_t below_half_degree = 0, below_five_degrees = 0;
+  Histogram radius_ratio;                                     ///< 3 r / R in [0,1]
+  Histogram dihedral;                                         ///< smallest angle of each tet, degrees
+  std::size_t below_half_degree = 0, below_five_degrees = 0;  ///< all tets, forced or not
+  std::size_t forced_below_half = 0, forced_below_five = 0;
+  std::vector<ForcedAngle> forced;
   Point worst_place{};
   double worst_dihedral = 0;
 };

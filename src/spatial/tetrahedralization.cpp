@@ -78,7 +78,8 @@ Refusal Tetrahedralization::insert(VertexId vertex, TetId hint) {
   return cavity.refusal;
 }
 
-void Tetrahedralization::star(VertexId v, std::vector<TetId>& out) const {
+template <class Until>
+void Tetrahedralization::flood_star(VertexId v, std::vector<TetId>& out, const Until& until) const {
   out.clear();
   if (!contains(v)) return;
   complex_.start_flood();
@@ -86,6 +87,10 @@ void Tetrahedralization::star(VertexId v, std::vector<TetId>& out) const {
   complex_.set_flood_state(out[0], kernel::kInside);
   for (std::size_t k = 0; k < out.size(); ++k) {
     const TetId t = out[k];
+    if (until(t)) {
+      std::swap(out[0], out[k]);
+      return;
+    }
     const int own = complex_.local(t, v);
     for (int i = 0; i < 4; ++i) {
       const TetId next = complex_.neighbour(t, i);
@@ -96,27 +101,28 @@ void Tetrahedralization::star(VertexId v, std::vector<TetId>& out) const {
   }
 }
 
+void Tetrahedralization::star(VertexId v, std::vector<TetId>& out) const {
+  flood_star(v, out, [](TetId) { return false; });
+}
+
 std::optional<TetEdge> Tetrahedralization::find_edge(VertexId a, VertexId b) const {
   if (!contains(a) || !contains(b) || a == b) return std::nullopt;
-  std::vector<TetId> around;
-  star(a, around);
-  for (const TetId t : around) {
-    const int j = complex_.local(t, b);
-    if (j >= 0) return TetEdge{t, complex_.local(t, a), j};
-  }
-  return std::nullopt;
+  int j = -1;
+  flood_star(a, around_, [&](TetId t) { return (j = complex_.local(t, b)) >= 0; });
+  if (j < 0) return std::nullopt;
+  return TetEdge{around_[0], complex_.local(around_[0], a), j};
 }
 
 std::optional<TetFacet> Tetrahedralization::find_facet(VertexId a, VertexId b, VertexId c) const {
   if (!contains(a) || !contains(b) || !contains(c) || a == b || b == c || c == a) return std::nullopt;
-  std::vector<TetId> around;
-  star(a, around);
-  for (const TetId t : around) {
-    const int j = complex_.local(t, b);
-    const int k = complex_.local(t, c);
-    if (j >= 0 && k >= 0) return TetFacet{t, 6 - complex_.local(t, a) - j - k};
-  }
-  return std::nullopt;
+  int j = -1, k = -1;
+  flood_star(a, around_, [&](TetId t) {
+    j = complex_.local(t, b);
+    k = complex_.local(t, c);
+    return j >= 0 && k >= 0;
+  });
+  if (j < 0 || k < 0) return std::nullopt;
+  return TetFacet{around_[0], 6 - complex_.local(around_[0], a) - j - k};
 }
 
 void Tetrahedralization::ring(TetEdge edge, std::vector<TetId>& out) const {

@@ -108,6 +108,9 @@ class Tetrahedralization {
  private:
   friend class CavitySearch;
   kernel::Sites sites() const { return {vertices_->positions(), nullptr}; }
+  /// The star in the order of a flood; stops at the first tet that `until` holds for, which becomes the first of `out`.
+  template <class Until>
+  void flood_star(VertexId v, std::vector<TetId>& out, const Until& until) const;
   void cover_vertices();  ///< grows the tables by vertex to the store's size
 
   const VertexStore* vertices_;
@@ -118,6 +121,7 @@ class Tetrahedralization {
   IndexedVector<VertexId, std::uint32_t> kept_degree_;  // how many kept segments end there
   kernel::StarBuilder star_builder_;
   std::vector<TetId> star_;
+  mutable std::vector<TetId> around_;            // scratch of find_edge and find_facet
   mutable TetId last_;                           // where the last location ended
   mutable kernel::VertexSet boundary_vertices_;  // scratch of find_cavity
 };

@@ -8,6 +8,7 @@
 #include "boundary/boundary_check.h"
 #include "boundary/boundary_mesh.h"
 #include "boundary/curve_mesh.h"
+#include "boundary/surface_triangles.h"
 #include "sizing/size_field.h"
 #include "support/bodies.h"
 #include "support/wriggle.h"
@@ -103,6 +104,32 @@ double face_area(const FaceMesh& mesh, const VertexStore& vertices) {
     area += norm(cross(vertices.position(v[1]) - a, vertices.position(v[2]) - a)) / 2;
   }
   return area;
+}
+
+/// Close to the poles of a long ellipsoid straight lines of the chart are strongly curved in space: triangles over such
+/// edges used to stand upright on the surface and to lie in the flat face that meets it there.
+TEST(Front, LongEllipsoidIsNotFoldedAtItsPoles) {
+  const Model model = make_half_ellipsoid(5, 1);
+  SizingOptions options;
+  options.size = model.frame.length_to_working(1);
+  options.gaps = false;
+  Context context;
+  auto sizes = make_size_field(model, options, context);
+  ASSERT_TRUE(sizes.ok());
+  const Front front = mesh_front(model, sizes.value());
+  const BoundaryMesh& mesh = front.result.mesh;
+  EXPECT_TRUE(crossing_pairs(front.vertices, surface_triangles(mesh)).empty());
+  for (const SurfaceTriangle& t : surface_triangles(mesh)) {
+    Vec3 centroid{};
+    for (VertexId v : t.vertices) centroid = centroid + (1.0 / 3) * front.vertices.position(v);
+    const Vec3 a = front.vertices.position(t.vertices[0]);
+    const Vec3 normal =
+        normalized(cross(front.vertices.position(t.vertices[1]) - a, front.vertices.position(t.vertices[2]) - a));
+    if (t.face != FaceId(0)) continue;
+    // The ellipsoid's own normal at the foot of the centroid, from its equation.
+    const Vec3 p = model.frame.to_cad(centroid);
+    EXPECT_GT(dot(normal, normalized(Vec3{p.x / 25, p.y, p.z})), 0.5) << p.x << " " << p.y << " " << p.z;
+  }
 }
 
 TEST(Front, AreasConverge) {

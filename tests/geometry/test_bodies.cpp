@@ -27,6 +27,7 @@ std::vector<Named> all_bodies() {
   bodies.push_back({"torus", test::make_torus(10, 3)});
   bodies.push_back({"tube", test::make_tube(3, 2.5, 8)});
   bodies.push_back({"lens", test::make_lens(5, 0.5)});
+  bodies.push_back({"half_ellipsoid", test::make_half_ellipsoid(5, 1)});
   return bodies;
 }
 

@@ -392,6 +392,49 @@ TEST(Validate, CancelledIsNotValid) {
   EXPECT_FALSE(validate(sample.mesh, &sample.model, 1, context).valid());
 }
 
+/// One tet, two of whose facets are on two faces that meet at two degrees in its first edge.
+Mesh thin_wedge() {
+  const double angle = 2 * std::numbers::pi / 180;
+  Mesh mesh;
+  mesh.points = {{0, 0, 0}, {1, 0, 0}, {0.5, 1, 0}, {0.5, std::cos(angle), std::sin(angle)}};
+  mesh.nodes = {{0, 0, {}}, {0, 1, {}}, {2, 0, {}}, {2, 1, {}}};
+  mesh.tets = {{0, 1, 2, 3}};
+  mesh.tet_solid = {0};
+  mesh.triangles = {{1, 0, 2}, {0, 1, 3}, {1, 2, 3}, {0, 3, 2}};
+  mesh.triangle_face = {0, 1, 2, 2};
+  mesh.segments = {{0, 1}};
+  mesh.segment_edge = {0};
+  mesh.corner_nodes = {0, 1};
+  for (std::uint32_t id = 1; id <= 3; ++id) mesh.faces.push_back({id, "", {}, {}, {}});
+  mesh.solids.push_back({1, "", {}, {}, {}});
+  mesh.edges.push_back({1, "", {}, {}, {}});
+  mesh.vertices = {{1, "", {}, {}, {}}, {2, "", {}, {}, {}}};
+  return mesh;
+}
+
+TEST(ForcedAngles, ThinWedgeOfTwoFacesIsTheBodysOwn) {
+  Context context;
+  const QualitySummary quality = validate(thin_wedge(), nullptr, 1, context).quality;
+  EXPECT_EQ(quality.below_five_degrees, 1u);
+  EXPECT_EQ(quality.forced_below_five, 1u);
+  EXPECT_EQ(quality.forced_below_half, 0u);
+  ASSERT_EQ(quality.forced.size(), 1u);
+  EXPECT_EQ(quality.forced[0].faces, (std::vector<std::uint32_t>{0, 1}));
+  EXPECT_EQ(quality.forced[0].edges, std::vector<std::uint32_t>{0});
+  EXPECT_NEAR(quality.forced[0].angle, 2, 1e-9);
+}
+
+TEST(ForcedAngles, FlatTetOffTheEdgesIsTheMeshsFault) {
+  Mesh mesh = thin_wedge();
+  mesh.segments.clear();
+  mesh.segment_edge.clear();
+  Context context;
+  const QualitySummary quality = validate(mesh, nullptr, 1, context).quality;
+  EXPECT_EQ(quality.below_five_degrees, 1u);
+  EXPECT_EQ(quality.forced_below_five, 0u);
+  EXPECT_TRUE(quality.forced.empty());
+}
+
 TEST(Validate, EmptyMesh) {
   Context context;
   EXPECT_FALSE(validate(Mesh{}, nullptr, 1, context).valid());

@@ -104,6 +104,42 @@ EdgeUse use(EdgeId edge, bool reversed, Vec2 origin, Vec2 direction, bool seam =
   return u;
 }
 
+// --- half ellipsoid ---
+
+/// centre + a cos u cos v x + b sin u cos v y + c sin v z.
+class Ellipsoid : public Surface {
+ public:
+  Ellipsoid(Vec3 centre, double a, double b, double c) : centre_(centre), a_(a), b_(b), c_(c) {}
+  SurfaceKind kind() const override { return SurfaceKind::other; }
+  Vec3 value(Vec2 uv) const override { return centre_ + at(std::cos(uv.x), std::sin(uv.x), uv.y); }
+  SurfaceFirst first(Vec2 uv) const override {
+    const SurfaceSecond s = second(uv);
+    return {s.value, s.du, s.dv};
+  }
+  SurfaceSecond second(Vec2 uv) const override {
+    const double cu = std::cos(uv.x), su = std::sin(uv.x), cv = std::cos(uv.y), sv = std::sin(uv.y);
+    const Vec3 around{-a_ * su, b_ * cu, 0}, outwards{a_ * cu, b_ * su, 0};
+    return {value(uv),      cv * around,  Vec3{-sv * outwards.x, -sv * outwards.y, c_ * cv},
+            -cv * outwards, -sv * around, -1.0 * at(cu, su, uv.y)};
+  }
+  double period_u() const override { return 2 * kPi; }
+  std::unique_ptr<Surface> clone() const override { return std::make_unique<Ellipsoid>(*this); }
+
+ private:
+  Vec3 at(double cu, double su, double v) const {
+    return {a_ * cu * std::cos(v), b_ * su * std::cos(v), c_ * std::sin(v)};
+  }
+  Vec3 centre_;
+  double a_, b_, c_;
+};
+
+Box3 half_ellipsoid_box(double a, double b, double c) {
+  Box3 box;
+  box.extend({-a, 0, -c});
+  box.extend({a, b, c});
+  return box;
+}
+
 // --- boxes ---
 
 /// A grid of corners with `cells` cells along x.
@@ -427,6 +463,34 @@ Model make_tube(double outer, double inner, double height) {
             solid,
             SolidId(),
             true});
+  return body.take();
+}
+
+Model make_half_ellipsoid(double a, double b) {
+  Builder body(half_ellipsoid_box(a, b, b));
+  const SolidId solid = body.solid(ball_volume(1) * a * b * b / 2);
+  const CadVertexId bottom = body.vertex({0, 0, -b}), top = body.vertex({0, 0, b});
+  const EdgeId low = body.edge(nullptr, 0, kPi, bottom, bottom), high = body.edge(nullptr, 0, kPi, top, top);
+  Placement upright = body.placement({});
+  upright.y = {0, 0, 1}, upright.z = {0, -1, 0};
+  Placement mirrored = upright;
+  mirrored.x = {-1, 0, 0}, mirrored.z = {0, 1, 0};
+  const EdgeId right = body.edge(make_ellipse(upright, body.length(a), body.length(b)), -kPi / 2, kPi / 2, bottom, top);
+  const EdgeId left = body.edge(make_ellipse(mirrored, body.length(a), body.length(b)), -kPi / 2, kPi / 2, bottom, top);
+
+  const double eccentricity = std::sqrt(1 - b * b / (a * a));
+  const double area = kPi * b * (b + a / eccentricity * std::asin(eccentricity));
+  auto surface = std::make_unique<Ellipsoid>(upright.origin, body.length(a), body.length(b), body.length(b));
+  const FaceId dome = body.face(std::move(surface), false, {0, -kPi / 2}, {kPi, kPi / 2}, area);
+  body.loop(dome, {use(low, false, {0, -kPi / 2}, {1, 0}), use(left, false, {kPi, 0}, {0, 1}),
+                   use(high, true, {0, kPi / 2}, {1, 0}), use(right, true, {0, 0}, {0, 1})});
+  const FaceId disc = body.face(make_plane(upright), false, {-a, -b}, {a, b}, kPi * a * b);
+  EdgeUse up = use(right, false, {}, {}), down = use(left, true, {}, {});
+  up.curve = make_parameter_ellipse({}, {a, 0}, {0, b});
+  down.curve = make_parameter_ellipse({}, {-a, 0}, {0, b});
+  body.loop(disc, {up, down});
+  body.sides(dome, solid, SolidId());
+  body.sides(disc, solid, SolidId());
   return body.take();
 }
 

@@ -25,6 +25,9 @@ Model make_torus(double major, double minor);
 Model make_tube(double outer, double inner, double height);
 /// Two spherical caps that meet in a sharp circle; `half_thickness` < radius of the rim.
 Model make_lens(double rim, double half_thickness);
+/// The half with y > 0 of a ball of radius b stretched to the half length a > b along x, as a CAD kernel makes it: the
+/// poles, at z = -b and b, lie on the rim of the flat face.
+Model make_half_ellipsoid(double a, double b);
 /// Ball of one solid inside another: the inner face has a solid on either side.
 Model make_nested_balls(double outer, double inner);
 
