@@ -5,8 +5,10 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
+#include <optional>
 #include <set>
 
+#include "geometry/check.h"
 #include "pipeline/assemble.h"
 
 namespace curvetet {
@@ -43,6 +45,25 @@ Vec3 out_point(Vec3 working, const Model& model, const Settings& settings) {
 std::size_t count_origin(const BodyMesh& body, const std::vector<VertexId>& vertices, Origin origin) {
   return static_cast<std::size_t>(
       std::count_if(vertices.begin(), vertices.end(), [&](VertexId v) { return body.vertices.origin(v) == origin; }));
+}
+
+/// The worst distance of an edge to one of the faces at which recovery failed, where it exceeds the size that was tried
+/// there: at that scale the body itself does not say where its boundary is.
+std::optional<ModelFault> gap_of_input(const RecoveryFailure& failure, const Model& model) {
+  if (!(failure.size > 0)) return std::nullopt;
+  CheckOptions options;
+  options.slack = 0;
+  options.floor = 0;
+  std::optional<ModelFault> worst;
+  for (const ModelFault& fault : check_model(model, options)) {
+    const auto concerns = [&](FaceId f) {
+      return fault.entity == "face " + std::to_string(model.faces[f].label.cad_id);
+    };
+    if (fault.kind != ModelFault::Kind::curve_off || !(fault.amount > failure.size)) continue;
+    if (std::none_of(failure.faces.begin(), failure.faces.end(), concerns)) continue;
+    if (!worst || fault.amount > worst->amount) worst = fault;
+  }
+  return worst;
 }
 
 struct FaceExtent {
@@ -224,7 +245,13 @@ Error to_error(const RecoveryFailure& failure, const Model& model, const Setting
   error.message =
       fmt::format("{} ({}) at ({:.6g}, {:.6g}, {:.6g}) {}", failure.what, faces, p.x, p.y, p.z, settings.unit);
   const double size = model.frame.length_to_cad(failure.size) * settings.unit_scale;
-  if (failure.proved)
+  if (const auto gap = gap_of_input(failure, model)) {
+    error.code = ErrorCode::bad_face;
+    error.message +=
+        fmt::format(": {} {}, by {:.3g} {}, more than the size at which this happens", gap->entity, gap->what,
+                    model.frame.length_to_cad(gap->amount) * settings.unit_scale, settings.unit);
+    error.hint = "repair it in the CAD system, or export with a tighter tolerance";
+  } else if (failure.proved)
     error.hint = "mend the body: these faces must not cross";
   else if (size > 0)
     error.hint = fmt::format("a size of {:.3g} {} on these faces may do (--face-size)", size, settings.unit);

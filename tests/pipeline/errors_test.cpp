@@ -1,0 +1,34 @@
+// Whose fault a failed recovery is: ours, or that of a body whose edges lie off their faces.
+#include <gtest/gtest.h>
+
+#include "geometry/analytic.h"
+#include "pipeline/report_builder.h"
+#include "support/bodies.h"
+
+namespace curvetet {
+namespace {
+
+TEST(RecoveryErrors, AnEdgeOffItsFaceIsTheInputsFaultBelowItsDistance) {
+  Model model = test::make_box(1, 1, 1);
+  ModelEdge& edge = model.edges[EdgeId(0)];
+  const FaceId face = edge.faces.front();
+  const Vec3 start = edge.curve->value(edge.low), end = edge.curve->value(edge.high);
+  const Vec3 off = 0.01 * model.faces[face].surface->normal(0.5 * (model.faces[face].low + model.faces[face].high));
+  const double range = edge.high - edge.low;
+  edge.curve = make_line(start + off - (edge.low / range) * (end - start), normalized(end - start),
+                         distance(start, end) / range);
+  Settings settings;
+  settings.unit = "mm";
+  RecoveryFailure failure;
+  failure.faces = {face};
+  failure.what = "facets of the surface mesh cross";
+  failure.size = 0.001;
+  const Error fine = to_error(failure, model, settings);
+  EXPECT_EQ(fine.code, ErrorCode::bad_face);
+  EXPECT_NE(fine.message.find("does not lie on it"), std::string::npos) << fine.message;
+  failure.size = 0.1;
+  EXPECT_EQ(to_error(failure, model, settings).code, ErrorCode::recovery_failed);
+}
+
+}  // namespace
+}  // namespace curvetet
