@@ -30,6 +30,7 @@
 #include <filesystem>
 #include <gp_Ax2.hxx>
 #include <gp_Circ.hxx>
+#include <gp_Elips.hxx>
 #include <numbers>
 #include <string>
 
@@ -76,6 +77,24 @@ Handle(Geom_BSplineCurve) spline(std::initializer_list<gp_Pnt> points) {
   return GeomAPI_PointsToBSpline(array).Curve();
 }
 
+TopoDS_Shape profile_face() {
+  const auto profile = spline({{2, 0, 0}, {3, 0, 2}, {1.5, 0, 4}, {2.5, 0, 6}});
+  BRepBuilderAPI_MakeWire wire(BRepBuilderAPI_MakeEdge(profile).Edge(),
+                               BRepBuilderAPI_MakeEdge(gp_Pnt(2.5, 0, 6), gp_Pnt(0, 0, 6)).Edge(),
+                               BRepBuilderAPI_MakeEdge(gp_Pnt(0, 0, 6), gp_Pnt(0, 0, 0)).Edge(),
+                               BRepBuilderAPI_MakeEdge(gp_Pnt(0, 0, 0), gp_Pnt(2, 0, 0)).Edge());
+  return BRepBuilderAPI_MakeFace(wire.Wire()).Face();
+}
+
+TopoDS_Shape revolved_profile() {
+  return BRepPrimAPI_MakeRevol(profile_face(), gp_Ax1(gp_Pnt(0, 0, 0), gp_Dir(0, 0, 1))).Shape();
+}
+
+TopoDS_Shape elliptic_prism() {
+  BRepBuilderAPI_MakeWire wire(BRepBuilderAPI_MakeEdge(gp_Elips(axis(gp_Pnt(0, 0, 0)), 4, 2)).Edge());
+  return BRepPrimAPI_MakePrism(BRepBuilderAPI_MakeFace(wire.Wire()).Face(), gp_Vec(0, 0, 6)).Shape();
+}
+
 void kinds() {
   save("kind_plane", BRepPrimAPI_MakeBox(3, 4, 5).Shape());
   save("kind_cylinder", BRepPrimAPI_MakeCylinder(2, 6).Shape());
@@ -86,14 +105,10 @@ void kinds() {
   save("kind_horn_torus_sector", BRepPrimAPI_MakeTorus(6, 2, 2.0).Shape());
   save("kind_bspline", BRepBuilderAPI_NurbsConvert(BRepPrimAPI_MakeTorus(6, 2).Shape()).Shape());
   save("kind_bspline_ball", BRepBuilderAPI_NurbsConvert(BRepPrimAPI_MakeSphere(4).Shape()).Shape());
-  const auto profile = spline({{2, 0, 0}, {3, 0, 2}, {1.5, 0, 4}, {2.5, 0, 6}});
-  BRepBuilderAPI_MakeWire wire(BRepBuilderAPI_MakeEdge(profile).Edge(),
-                               BRepBuilderAPI_MakeEdge(gp_Pnt(2.5, 0, 6), gp_Pnt(0, 0, 6)).Edge(),
-                               BRepBuilderAPI_MakeEdge(gp_Pnt(0, 0, 6), gp_Pnt(0, 0, 0)).Edge(),
-                               BRepBuilderAPI_MakeEdge(gp_Pnt(0, 0, 0), gp_Pnt(2, 0, 0)).Edge());
-  const TopoDS_Face section = BRepBuilderAPI_MakeFace(wire.Wire()).Face();
-  save("kind_revolution", BRepPrimAPI_MakeRevol(section, gp_Ax1(gp_Pnt(0, 0, 0), gp_Dir(0, 0, 1))).Shape());
+  const TopoDS_Shape section = profile_face();
+  save("kind_revolution", revolved_profile());
   save("kind_extrusion", BRepPrimAPI_MakePrism(section, gp_Vec(0, 5, 1)).Shape());
+  save("kind_closed_extrusion", elliptic_prism());
   BRepOffsetAPI_ThruSections loft(true, false);
   for (double z : {0.0, 3.0, 6.0}) {
     const double r = z == 3.0 ? 1.5 : 3.0;
@@ -110,13 +125,22 @@ void kinds() {
   save("kind_fillet", fillet.Shape());
 }
 
+/// A bore of radius r across the seams at u = 0, from the axis of z outward.
+TopoDS_Shape bored(const TopoDS_Shape& body, double z, double r) {
+  return cut(body, BRepPrimAPI_MakeCylinder(axis(gp_Pnt(0, 0, z), gp_Dir(1, 0, 0)), r, 20).Shape());
+}
+
 void seams() {
-  save("seam_cylinder_hole", cut(BRepPrimAPI_MakeCylinder(3, 10).Shape(),
-                                 BRepPrimAPI_MakeCylinder(axis(gp_Pnt(0, 0, 5), gp_Dir(1, 0, 0)), 1, 10).Shape()));
-  save("seam_sphere_hole", cut(BRepPrimAPI_MakeSphere(4).Shape(),
-                               BRepPrimAPI_MakeCylinder(axis(gp_Pnt(0, 0, 0), gp_Dir(1, 0, 0)), 1, 10).Shape()));
-  save("seam_torus_hole", cut(BRepPrimAPI_MakeTorus(6, 2).Shape(),
-                              BRepPrimAPI_MakeCylinder(axis(gp_Pnt(6, 0, 0), gp_Dir(1, 0, 0)), 0.7, 10).Shape()));
+  const TopoDS_Shape torus = BRepPrimAPI_MakeTorus(6, 2).Shape();
+  save("seam_cylinder_hole", bored(BRepPrimAPI_MakeCylinder(3, 10).Shape(), 5, 1));
+  save("seam_cone_hole", bored(BRepPrimAPI_MakeCone(4, 0, 10).Shape(), 4, 1));
+  save("seam_sphere_hole", bored(BRepPrimAPI_MakeSphere(4).Shape(), 0, 1));
+  save("seam_torus_hole",
+       cut(torus, BRepPrimAPI_MakeCylinder(axis(gp_Pnt(6, 0, 0), gp_Dir(1, 0, 0)), 0.7, 10).Shape()));
+  save("seam_bspline_hole", cut(BRepBuilderAPI_NurbsConvert(torus).Shape(),
+                                BRepPrimAPI_MakeCylinder(axis(gp_Pnt(6, 0, 0), gp_Dir(1, 0, 0)), 0.7, 10).Shape()));
+  save("seam_revolution_hole", bored(revolved_profile(), 3, 0.8));
+  save("seam_extrusion_hole", bored(elliptic_prism(), 3, 1));
   save("pole_hole",
        cut(BRepPrimAPI_MakeSphere(4).Shape(), BRepPrimAPI_MakeCylinder(axis(gp_Pnt(0, 0, 0)), 1, 10).Shape()));
 }

@@ -137,7 +137,11 @@ class Corpus:
         if diagonal is None:
             row["cause"] = cause
             return row
-        row["size"] = size = diagonal / divisor
+        return self.at_size(body, diagonal / divisor, name, row)
+
+    def at_size(self, body, size, name, row):
+        """Meshes one body at one size; the row gets what became of it."""
+        row["size"] = size
         mesh, report = self.a.out / f"{name}.msh", self.a.out / f"{name}.report.json"
         for old in (mesh, report):
             old.unlink(missing_ok=True)

@@ -55,7 +55,7 @@ class EdgeRecovery {
   // A vertex of the tets around the segment, on no face of its curve, inside its diametral sphere.
   bool encroached(const Conjoint::Segment& s) {
     const auto edge = tets_.find_edge(s.a, s.b);
-    if (!edge) return false;
+    if (!edge || (options_.may_split && !options_.may_split(s.edge))) return false;
     const Vec3 a = conjoint_.vertices().position(s.a), b = conjoint_.vertices().position(s.b);
     if (distance(a, b) < options_.floor) return false;
     tets_.ring(*edge, ring_);

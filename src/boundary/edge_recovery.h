@@ -18,6 +18,7 @@ struct EdgeRecoveryOptions {
   bool split_encroached =
       false;  ///< split a segment whose diametral sphere holds a vertex on no face of its curve (paper)
   std::function<void(EdgeId)> before_split;
+  std::function<bool(EdgeId)> may_split;  ///< where only encroached: curves with a locked face may not; empty: all may
 };
 struct EdgeRecoveryResult {
   std::size_t flipped = 0, splits = 0;

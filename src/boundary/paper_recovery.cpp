@@ -46,6 +46,7 @@ class PaperRecovery {
     options.floor = options_.floor;
     options.flips = false;
     options.split_encroached = true;
+    options.may_split = [this](EdgeId e) { return !touches_locked(e); };
     auto edges = recover_edges(conjoint_, options, context_);
     if (!edges.ok()) return edges.error();
     out_.recovery.edge_splits += edges.value().splits;
@@ -65,6 +66,8 @@ class PaperRecovery {
       if (!edges.ok()) return edges.error();
       if (!out_.recovery.failures.empty()) return Done{};
       const MarchResult m = march_face(conjoint_, face);
+      context_.log(LogLevel::debug, fmt::format("face {}: {} triangles, {} missing, {} edges stuck", face.value(),
+                                                m.total, m.missing.size(), m.stuck.size()));
       parametric = surface_triangles(mesh, face).size();
       if (m.complete && (m.missing.empty() || take_over(mesh, face, m, out_.recovery.faces[face]))) break;
       waited = m.seeds > best ? 0 : waited + 1;
@@ -106,22 +109,16 @@ class PaperRecovery {
     SurfaceRefinement refinement;
     refinement.floor = options_.floor;
     refinement.origin = Origin::stage_two;
-    refinement.split_curves = none_locked_around(face, t);
+    refinement.may_split = [this](EdgeId e) { return !touches_locked(e); };
     const bool ok = refine_triangle(conjoint_, face, t, refinement).ok();
     if (ok) ++out_.recovery.points;
     return ok;
   }
 
   // A curve with a locked face on it must not be split: its facets would go.
-  bool none_locked_around(FaceId face, TriangleId t) const {
-    const FaceMesh& mesh = conjoint_.boundary().faces[face];
-    for (std::int32_t use : mesh.triangle(t).use) {
-      if (use < 0) continue;
-      for (FaceId f :
-           conjoint_.model().edges[conjoint_.boundary().uses[face][static_cast<std::size_t>(use)].edge].faces)
-        if (locked_[f]) return false;
-    }
-    return true;
+  bool touches_locked(EdgeId edge) const {
+    const std::vector<FaceId>& faces = conjoint_.model().edges[edge].faces;
+    return std::any_of(faces.begin(), faces.end(), [this](FaceId f) { return locked_[f]; });
   }
 
   bool refine_stuck(FaceId face, const StuckEdge& e) {

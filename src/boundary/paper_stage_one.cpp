@@ -1,5 +1,5 @@
 // Definition 1 of the paper: a triangle and a vertex are adjacent when some vertex of the triangle and the vertex lie
-// on a common face. Vertices near a sphere are found through a grid of cells; the paper does not say how it finds them.
+// on a common face. Vertices in a sphere are found through an octree; the paper does not say how it finds them.
 #include <algorithm>
 #include <cmath>
 #include <deque>
@@ -8,6 +8,7 @@
 
 #include "boundary/boundary_mesh.h"
 #include "boundary/paper_recovery.h"
+#include "boundary/point_octree.h"
 #include "boundary/refine_surface.h"
 #include "quality/measures.h"
 
@@ -15,42 +16,10 @@ namespace curvetet {
 
 namespace {
 
-class CellGrid {
- public:
-  explicit CellGrid(double cell) : cell_(cell) {}
-  void add(VertexId v, Vec3 p) { cells_[key(p)].push_back(v); }
-
-  template <class Visit>
-  void near(Vec3 centre, double radius, const Visit& visit) const {
-    const Key low = key(centre - Vec3{radius, radius, radius}), high = key(centre + Vec3{radius, radius, radius});
-    for (int x = low[0]; x <= high[0]; ++x)
-      for (int y = low[1]; y <= high[1]; ++y)
-        for (int z = low[2]; z <= high[2]; ++z) {
-          const auto found = cells_.find({x, y, z});
-          if (found == cells_.end()) continue;
-          for (VertexId v : found->second) visit(v);
-        }
-  }
-
- private:
-  using Key = std::array<int, 3>;
-  Key key(Vec3 p) const {
-    return {static_cast<int>(std::floor(p.x / cell_)), static_cast<int>(std::floor(p.y / cell_)),
-            static_cast<int>(std::floor(p.z / cell_))};
-  }
-  double cell_;
-  std::map<Key, std::vector<VertexId>> cells_;
-};
-
 class PaperStageOne {
  public:
   PaperStageOne(Conjoint& conjoint, double floor, PaperCounts& counts, Context& context)
-      : conjoint_(conjoint),
-        vertices_(conjoint.vertices()),
-        floor_(floor),
-        counts_(counts),
-        context_(context),
-        grid_(std::max(16 * floor, 1e-3)) {}
+      : conjoint_(conjoint), vertices_(conjoint.vertices()), floor_(floor), counts_(counts), context_(context) {}
 
   Status run() {
     std::set<VertexId> used;
@@ -58,7 +27,7 @@ class PaperStageOne {
       queue_.push_back(t);
       used.insert(t.vertices.begin(), t.vertices.end());
     }
-    for (VertexId v : used) grid_.add(v, vertices_.position(v));
+    for (VertexId v : used) placed_.add(v, vertices_.position(v));
     while (!queue_.empty()) {
       if (context_.should_stop()) return context_.stop_error("first stage of face recovery");
       const SurfaceTriangle t = queue_.front();
@@ -88,10 +57,10 @@ class PaperStageOne {
     if (!std::isfinite(radius) || radius > 1) return {};
     const auto allowed = allowed_.find(facet_key(t.vertices[0], t.vertices[1], t.vertices[2]));
     VertexId found;
-    grid_.near(centre, radius, [&](VertexId v) {
-      if (distance(vertices_.position(v), centre) > radius || adjacent(t.vertices, v)) return;
+    placed_.visit_ball(centre, radius, [&](VertexId v) {
+      if ((found.valid() && found < v) || adjacent(t.vertices, v)) return;
       if (allowed != allowed_.end() && allowed->second.count(v)) return;
-      if (!found.valid() || v < found) found = v;
+      found = v;
     });
     return found;
   }
@@ -122,7 +91,7 @@ class PaperStageOne {
     const ConjointResult done = refine_triangle(conjoint_, t.face, t.triangle, refinement);
     if (!done.ok()) return false;
     ++counts_.stage_one_points;
-    grid_.add(done.vertex, vertices_.position(done.vertex));
+    placed_.add(done.vertex, vertices_.position(done.vertex));
     for (const auto& [face, triangles] : conjoint_.touched())
       for (TriangleId id : triangles) {
         const FaceMesh& mesh = conjoint_.boundary().faces[face];
@@ -138,7 +107,7 @@ class PaperStageOne {
   double floor_;
   PaperCounts& counts_;
   Context& context_;
-  CellGrid grid_;
+  PointOctree placed_;
   std::deque<SurfaceTriangle> queue_;
   std::map<FacetKey, std::set<VertexId>> allowed_;
 };

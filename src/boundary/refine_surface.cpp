@@ -48,7 +48,6 @@ class TriangleRefiner {
       last = try_point(*q);
       if (last.ok()) return last;
     }
-    if (!options_.split_curves) return last;
     return split_longest_segment(triangle_, last);
   }
 
@@ -81,6 +80,12 @@ class TriangleRefiner {
     return conjoint_.insert_on_face(face_, on_grid, *at, options_.origin);
   }
 
+  EdgeId edge_of(std::int32_t use) const {
+    return conjoint_.boundary().uses[face_][static_cast<std::size_t>(use)].edge;
+  }
+
+  bool may_split(EdgeId edge) const { return !options_.may_split || options_.may_split(edge); }
+
   // The segment of the triangle whose diametral sphere holds p, split; nothing if there is none.
   std::optional<ConjointResult> split_encroached(TriangleId at, Vec3 p) {
     const FaceTriangle& t = mesh_.triangle(at);
@@ -90,8 +95,8 @@ class TriangleRefiner {
       if (a == b) continue;
       const Vec3 pa = conjoint_.vertices().position(a), pb = conjoint_.vertices().position(b);
       if (dot(pa - p, pb - p) >= 0) continue;
-      if (!options_.split_curves) return ConjointResult{ConjointRefusal::curved_segment, {}};
-      const EdgeId edge = conjoint_.boundary().uses[face_][static_cast<std::size_t>(t.use[k])].edge;
+      const EdgeId edge = edge_of(t.use[k]);
+      if (!may_split(edge)) return ConjointResult{ConjointRefusal::curved_segment, {}};
       return refine_segment(conjoint_, edge, a, b, options_);
     }
     return std::nullopt;
@@ -102,7 +107,7 @@ class TriangleRefiner {
     double longest = 0;
     std::size_t best = 3;
     for (std::size_t k = 0; k < 3; ++k) {
-      if (t.use[k] < 0) continue;
+      if (t.use[k] < 0 || !may_split(edge_of(t.use[k]))) continue;
       const double length = distance(conjoint_.vertices().position(mesh_.node(t.node[(k + 1) % 3]).vertex),
                                      conjoint_.vertices().position(mesh_.node(t.node[(k + 2) % 3]).vertex));
       if (length > longest) {
@@ -111,8 +116,7 @@ class TriangleRefiner {
       }
     }
     if (best == 3) return otherwise;
-    const EdgeId edge = conjoint_.boundary().uses[face_][static_cast<std::size_t>(t.use[best])].edge;
-    return refine_segment(conjoint_, edge, mesh_.node(t.node[(best + 1) % 3]).vertex,
+    return refine_segment(conjoint_, edge_of(t.use[best]), mesh_.node(t.node[(best + 1) % 3]).vertex,
                           mesh_.node(t.node[(best + 2) % 3]).vertex, options_);
   }
 

@@ -11,7 +11,7 @@ namespace curvetet {
 struct SurfaceRefinement {
   double floor = 0;  ///< never refine below this spacing (working units)
   Origin origin = Origin::stage_two;
-  bool split_curves = true;                  ///< curves may be split where a point would encroach one
+  std::function<bool(EdgeId)> may_split;     ///< curves that may be split where a point would encroach them; empty: all
   std::function<void(EdgeId)> before_split;  ///< called before a curve is split (to unlock the faces on it)
 };
 

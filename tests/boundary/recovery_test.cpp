@@ -6,6 +6,7 @@
 #include <iterator>
 #include <string_view>
 
+#include "boundary/refine_surface.h"
 #include "support/bodies.h"
 #include "support/run_boundary.h"
 
@@ -186,6 +187,32 @@ TEST(Certificate, TellsWhatTheMarchBroughtIn) {
     }
   }
   EXPECT_GT(brought_in, 0u) << "or the test says nothing";
+}
+
+TEST(Refinement, CurvesThatMayNotBeSplitStayWhole) {
+  const Model model = make_cylinder(1, 5);
+  BoundaryRunOptions options{10, 0};
+  options.until = Until::tets;
+  const auto run = run_boundary(model, options);
+  ASSERT_FALSE(HasFailure());
+  const auto points_on_curves = [&] {
+    std::size_t count = 0;
+    for (const CurveMesh& curve : run->boundary.curves) count += curve.vertices.size();
+    return count;
+  };
+  const std::size_t before = points_on_curves();
+  SurfaceRefinement refinement;
+  refinement.floor = 1e-4;
+  refinement.may_split = [](EdgeId) { return false; };
+  std::size_t inserted = 0;
+  for (int round = 0; round < 3; ++round)
+    for (const SurfaceTriangle& t : surface_triangles(run->boundary)) {
+      const FaceMesh& mesh = run->boundary.faces[t.face];
+      if (!mesh.triangle(t.triangle).alive() || mesh.vertices(t.triangle) != t.vertices) continue;
+      if (refine_triangle(*run->conjoint, t.face, t.triangle, refinement).ok()) ++inserted;
+    }
+  EXPECT_GT(inserted, 0u);
+  EXPECT_EQ(points_on_curves(), before);
 }
 
 TEST(Classification, VolumesApproachTheCadAsTheSizeFalls) {
