@@ -19,7 +19,6 @@
 #include <cmath>
 #include <filesystem>
 #include <fstream>
-#include <regex>
 #include <thread>
 
 #include "cad/guard.h"
@@ -155,8 +154,13 @@ TEST(Load, UnitOfAFileWithoutOne) {
   STEPControl_Writer writer;
   writer.Transfer(BRepPrimAPI_MakeBox(1, 2, 3).Shape(), STEPControl_AsIs);
   writer.Write(folder.file("box.step").c_str());
-  const std::regex units(R"(GLOBAL_UNIT_ASSIGNED_CONTEXT\s*\(\([^)]*\)\))");
-  write_text(folder.file("bare.step"), std::regex_replace(read_text(folder.file("box.step")), units, ""));
+  std::string text = read_text(folder.file("box.step"));
+  for (std::size_t at = 0; (at = text.find("GLOBAL_UNIT_ASSIGNED_CONTEXT", at)) != std::string::npos;) {
+    const std::size_t end = text.find("))", at);
+    ASSERT_NE(end, std::string::npos);
+    text.erase(at, end + 2 - at);
+  }
+  write_text(folder.file("bare.step"), text);
   const Result<Model> bare = load(folder.file("bare.step"), options);
   ASSERT_TRUE(bare) << bare.error().message;
   EXPECT_EQ(bare.value().unit, "inch");
