@@ -161,11 +161,15 @@ class FaceRecovery {
       const FaceId face(f);
       if (recovered_[face]) continue;
       const auto missing = missing_triangles(face);
+      if (missing.empty()) {  // unlocked only to make room for others
+        lock(face, surface_triangles(conjoint_.boundary().faces[face], face).size());
+        continue;
+      }
       RecoveryFailure failure;
       failure.faces = {face};
       failure.what = fmt::format("{} of {} facets of the face are not recovered", missing.size(),
                                  conjoint_.boundary().faces[face].triangle_count());
-      if (!missing.empty()) locate_failure(missing.front(), failure);
+      locate_failure(missing.front(), failure);
       result_.failures.push_back(failure);
     }
   }

@@ -119,7 +119,13 @@ void fuse(Attempt& best, const std::string& source, Overlaps overlaps) {
     return;
   }
   Attempt next = attempt(std::move(fused), source);
-  if (next.bad < kSerious) best = std::move(next);
+  if (next.bad < kSerious) {
+    best = std::move(next);
+    return;
+  }
+  const HealingNote note{"file", "solids that touch are not fused: the fused shape would be broken"};
+  best.body.notes.push_back(note);
+  best.model.value().healing.push_back(note);
 }
 
 Error fault_error(const Attempt& result, const std::string& source) {
