@@ -59,7 +59,8 @@ struct ForcedAngleReport {
 /// Counts of recovery as a whole; those of the paper's remeshing cases are of `--recovery paper` only.
 struct RecoveryCounts {
   std::size_t crossings = 0;  ///< pairs of triangles of the first t_3d that crossed
-  std::size_t edge_flips = 0, edge_splits = 0;
+  std::size_t edge_flips = 0, edge_splits = 0, edges_filled = 0;
+  std::size_t volume_points = 0;  ///< put into the volume to fill a hole that no reconnection closed
   int rounds = 0;
   std::size_t stage_one_points = 0, stage_one_allowed = 0, stage_two_points = 0;
   std::size_t case1 = 0, case3a = 0, case3b = 0, case4 = 0, fallback_faces = 0;

@@ -7,6 +7,7 @@
 
 #include <deque>
 
+#include "boundary/fill_holes.h"
 #include "spatial/flips.h"
 
 namespace curvetet {
@@ -93,12 +94,16 @@ class EdgeRecovery {
 
   // A segment at the floor of spacing: flips are what is left, also where splitting is the rule.
   void reconnect_or_fail(const Conjoint::Segment& s, ConjointRefusal refusal) {
-    if (!recover_edge_by_flips(tets_, s.a, s.b, kLastDepth)) {
+    if (recover_edge_by_flips(tets_, s.a, s.b, kLastDepth)) {
+      ++result_.flipped;
+    } else if (const FillResult filled = fill_around_segment(conjoint_, s, true); filled.recovered > 0) {
+      ++result_.filled;
+      result_.volume_points += filled.points;
+    } else {
       fail(s, refusal);
       return;
     }
     tets_.keep_segment(s.a, s.b);
-    ++result_.flipped;
   }
 
   void fail(const Conjoint::Segment& s, ConjointRefusal refusal) {

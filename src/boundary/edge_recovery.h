@@ -22,6 +22,8 @@ struct EdgeRecoveryOptions {
 };
 struct EdgeRecoveryResult {
   std::size_t flipped = 0, splits = 0;
+  std::size_t filled = 0;         ///< by making the tetrahedralization around them anew (fill_holes)
+  std::size_t volume_points = 0;  ///< that this took, none on the surface
   std::vector<RecoveryFailure> failures;
 };
 Result<EdgeRecoveryResult> recover_edges(Conjoint& conjoint, const EdgeRecoveryOptions& options, Context& context);

@@ -10,6 +10,7 @@
 #include <algorithm>
 
 #include "boundary/edge_recovery.h"
+#include "boundary/fill_holes.h"
 #include "boundary/reconnect.h"
 
 namespace curvetet {
@@ -57,6 +58,8 @@ class FaceRecovery {
     if (!edges.ok()) return edges.error();
     result_.edge_flips += edges.value().flipped;
     result_.edge_splits += edges.value().splits;
+    result_.edges_filled += edges.value().filled;
+    result_.volume_points += edges.value().volume_points;
     result_.failures = std::move(edges.value().failures);
     return Done{};
   }
@@ -116,6 +119,7 @@ class FaceRecovery {
         if (r.missing.empty()) lock(face, surface_triangles(conjoint_.boundary().faces[face], face).size());
       }
     }
+    fill_missing(false);
   }
 
   std::vector<SurfaceTriangle> missing_triangles(FaceId face) const {
@@ -130,12 +134,28 @@ class FaceRecovery {
 
   bool refine_missing() {
     std::size_t inserted = refine_pass();
+    if (inserted == 0 && fill_missing(true) > 0) return true;
     if (inserted == 0) {  // the locks of other faces are in the way
       for (std::size_t f = 0; f < recovered_.size(); ++f) unlock(FaceId(f));
       inserted = refine_pass();
     }
     result_.points += inserted;
     return inserted > 0;
+  }
+
+  /// Facets recovered.
+  std::size_t fill_missing(bool with_points) {
+    std::size_t recovered = 0;
+    for (std::size_t f = 0; f < recovered_.size(); ++f) {
+      const FaceId face(f);
+      if (recovered_[face] || context_.should_stop()) continue;
+      const FillResult filled = fill_holes(conjoint_, face, with_points);
+      result_.faces[face].reconnected += filled.recovered;
+      result_.volume_points += filled.points;
+      recovered += filled.recovered;
+      if (missing_triangles(face).empty()) lock(face, surface_triangles(conjoint_.boundary().faces[face], face).size());
+    }
+    return recovered;
   }
 
   std::size_t refine_pass() {

@@ -36,7 +36,8 @@ struct FaceRecoveryResult {
   IndexedVector<FaceId, FaceCertificate> faces;
   int rounds = 0;
   std::size_t points = 0;
-  std::size_t edge_flips = 0, edge_splits = 0;
+  std::size_t volume_points = 0;  ///< not on the surface: where a hole could be filled by no other means
+  std::size_t edge_flips = 0, edge_splits = 0, edges_filled = 0;
   std::vector<RecoveryFailure> failures;  ///< empty when complete
 };
 

@@ -50,6 +50,8 @@ class PaperRecovery {
     auto edges = recover_edges(conjoint_, options, context_);
     if (!edges.ok()) return edges.error();
     out_.recovery.edge_splits += edges.value().splits;
+    out_.recovery.edges_filled += edges.value().filled;
+    out_.recovery.volume_points += edges.value().volume_points;
     for (RecoveryFailure& f : edges.value().failures) out_.recovery.failures.push_back(std::move(f));
     return Done{};
   }

@@ -9,6 +9,7 @@
 
 #include "conjoint/surface_meshes.h"
 #include "mesh/vertex_store.h"
+#include "spatial/triangles_cross.h"
 
 namespace curvetet {
 
@@ -26,9 +27,6 @@ std::vector<SurfaceTriangle> surface_triangles(const FaceMesh& mesh, FaceId face
 /// Sorted vertex values: the identity of a facet.
 using FacetKey = std::array<std::uint32_t, 3>;
 FacetKey facet_key(VertexId a, VertexId b, VertexId c);
-
-/// Do two triangles meet elsewhere than in shared vertices and edges? Exact.
-bool triangles_cross(const VertexStore& vertices, const std::array<VertexId, 3>& a, const std::array<VertexId, 3>& b);
 
 /// Pairs (i < j) of triangles that cross, sorted; no more than `limit`. Bounding volume hierarchy, then the exact test;
 /// O(n log n + pairs).

@@ -6,6 +6,8 @@
 
 #include <algorithm>
 
+#include "boundary/fill_holes.h"
+
 namespace curvetet {
 
 namespace {
@@ -108,6 +110,7 @@ class BodyMesher {
 
     clock_.start("classification", 0.5);
     body.classified = classify(*body.conjoint);
+    own_points(*body.conjoint);
     return body.classified.failures;
   }
 

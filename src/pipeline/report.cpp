@@ -28,6 +28,8 @@ Json recovery_json(const RecoveryCounts& counts) {
   return {{"crossings", counts.crossings},
           {"edge_flips", counts.edge_flips},
           {"edge_splits", counts.edge_splits},
+          {"edges_filled", counts.edges_filled},
+          {"volume_points", counts.volume_points},
           {"rounds", counts.rounds},
           {"stage_one_points", counts.stage_one_points},
           {"stage_one_allowed", counts.stage_one_allowed},

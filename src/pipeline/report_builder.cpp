@@ -145,6 +145,8 @@ void report_body(Report& report, const Model& model, const Settings& settings, c
   c.crossings = mesh.crossings.first_pairs;
   c.edge_flips = mesh.recovery.edge_flips;
   c.edge_splits = mesh.recovery.edge_splits;
+  c.edges_filled = mesh.recovery.edges_filled;
+  c.volume_points = mesh.recovery.volume_points;
   c.rounds = mesh.recovery.rounds;
   c.stage_one_points = mesh.crossings.points + mesh.paper.stage_one_points;
   c.stage_one_allowed = mesh.paper.stage_one_allowed;

@@ -134,7 +134,8 @@ class FaceMesh {
   /// Flips one unconstrained edge if the result turns left (exactly).
   bool flip(FaceEdge edge);
   /// Lawson's flips from the given triangles until none is wanted; at most 64 and 32 per edge given, for a criterion
-  /// need not be transitive. `changed` becomes the triangles touched.
+  /// need not be transitive. `changed` becomes the triangles touched. An edge to a pole that is there twice in the
+  /// chart, on both sides of a triangle over the pole, is flipped as the one edge that it is in space.
   void restore(std::span<const TriangleId> from, const FlipWanted& wanted, std::vector<TriangleId>& changed);
 
   /// Removes a node without constrained edges and fills its star without flips, then restores the criterion if one is
@@ -206,6 +207,8 @@ class FaceMesh {
   void flip_star(NodeId n, std::vector<TriangleId>& fan, const FlipWanted& wanted);
   bool can_flip(FaceEdge e) const;
   std::array<TriangleId, 2> flip_edge(FaceEdge e);
+  std::optional<int> pole_apex(TriangleId t) const;
+  std::vector<TriangleId> flip_at_pole(TriangleId t, const FlipWanted& wanted);
 
   // cavity.cpp
   void recover_edge(NodeId a, NodeId b, std::vector<TriangleId>& made);

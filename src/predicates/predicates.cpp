@@ -285,6 +285,17 @@ bool collinear(Vec3 a, Vec3 b, Vec3 c) {
   return orient2d_dropped(a, b, c, 2) == 0 && orient2d_dropped(a, b, c, 1) == 0 && orient2d_dropped(a, b, c, 0) == 0;
 }
 
+bool segments_cross(Vec3 p, Vec3 q, Vec3 a, Vec3 b) {
+  if (orient3d(p, q, a, b) != 0) return false;
+  for (int axis = 0; axis < 3; ++axis) {
+    const int sa = orient2d_dropped(p, q, a, axis), sb = orient2d_dropped(p, q, b, axis);
+    if (sa * sb > 0) return false;
+    if (sa * sb == 0) continue;
+    return orient2d_dropped(a, b, p, axis) * orient2d_dropped(a, b, q, axis) < 0;
+  }
+  return false;
+}
+
 SegmentTriangle segment_triangle(Vec3 p, Vec3 q, Vec3 a, Vec3 b, Vec3 c) {
   const int side_p = orient3d(a, b, c, p);
   const int side_q = orient3d(a, b, c, q);

@@ -39,6 +39,9 @@ int orient2d_dropped(Vec3 a, Vec3 b, Vec3 c, int axis);
 /// True when the three points are exactly collinear.
 bool collinear(Vec3 a, Vec3 b, Vec3 c);
 
+/// True if the open segments pq and ab meet in one point. Exact.
+bool segments_cross(Vec3 p, Vec3 q, Vec3 a, Vec3 b);
+
 /// How a closed triangle abc and a closed segment pq meet, exactly.
 enum class SegmentTriangle { disjoint, touches, crosses };
 /// `crosses`: the segment's interior passes through the triangle's interior, from one side to the other; `touches`: any

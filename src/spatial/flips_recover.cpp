@@ -32,18 +32,6 @@ double volume_over_length(Vec3 a, Vec3 b, Vec3 c, Vec3 d) {
   return dot(cross(u, v), w) / (longest * std::sqrt(longest));
 }
 
-/// True if the open segments pq and ab meet in one point.
-bool segments_cross(Vec3 p, Vec3 q, Vec3 a, Vec3 b) {
-  if (orient3d(p, q, a, b) != 0) return false;
-  for (int axis = 0; axis < 3; ++axis) {
-    const int sa = orient2d_dropped(p, q, a, axis), sb = orient2d_dropped(p, q, b, axis);
-    if (sa * sb > 0) return false;
-    if (sa * sb == 0) continue;
-    return orient2d_dropped(a, b, p, axis) * orient2d_dropped(a, b, q, axis) < 0;
-  }
-  return false;
-}
-
 /// True if v lies on the open segment ab.
 bool on_segment(Vec3 v, Vec3 a, Vec3 b) { return collinear(a, b, v) && dot(v - a, b - a) > 0 && dot(v - b, a - b) > 0; }
 

@@ -183,6 +183,7 @@ std::size_t Tetrahedralization::bytes() const {
 }
 
 void Tetrahedralization::touch(TetId t) {
+  if (vertex_tet_.size() < vertices_->size()) cover_vertices();
   for (const VertexId v : complex_.vertices(t)) {
     if (v != kInfinite) vertex_tet_[v] = t;
   }

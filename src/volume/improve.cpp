@@ -144,9 +144,7 @@ class Improvement {
     for (TetId t : bad_) {
       if (!is_inside(t) || quality(t) >= goal_) continue;
       for (VertexId v : complex_.vertices(t)) {
-        if (vertices_.owner(v).kind == OwnerKind::interior && vertices_.origin(v) == Origin::interior) {
-          movable_.push_back(v);
-        }
+        if (vertices_.owner(v).kind == OwnerKind::interior) movable_.push_back(v);
       }
     }
     std::sort(movable_.begin(), movable_.end());

@@ -396,5 +396,38 @@ TEST(Determinism, SameOperationsSameMesh) {
   EXPECT_EQ(run(), run());
 }
 
+/// A chart whose lower border is one point in space, vertex 0. Node 10 is the apex of the triangle over it.
+FaceInput chart_with_pole() {
+  ChainInput pole{0, {VertexId(0U), VertexId(0U)}, {{-0.5, -0.5}, {0.5, -0.5}}, false};
+  ChainInput rest{1, {VertexId(0U), VertexId(1U), VertexId(2U), VertexId(0U)}, {}, false};
+  rest.q = {{0.5, -0.5}, {0.5, 0.5}, {-0.5, 0.5}, {-0.5, -0.5}};
+  FaceInput input;
+  input.loops.push_back({{pole, rest}, false});
+  for (const auto& [v, q] : std::vector<std::pair<std::uint32_t, Vec2>>{
+           {10, {0, -0.046875}}, {11, {-0.3125, -0.109375}}, {12, {0.3125, -0.109375}}})
+    input.isolated.push_back({VertexId(v), q});
+  return input;
+}
+
+TEST(PlanarEdit, AnEdgeToAPoleIsFlippedAsTheOneEdgeItIsInSpace) {
+  FaceMesh mesh = built(chart_with_pole());
+  const auto node = [&](std::uint32_t v) { return mesh.nodes_of(VertexId(v)).front(); };
+  const auto poles = mesh.nodes_of(VertexId(0U));
+  ASSERT_EQ(poles.size(), 2U);
+  ASSERT_TRUE(mesh.find_edge(node(10), poles[0]) && mesh.find_edge(node(10), poles[1]));
+  const auto is_pole = [&](NodeId n) { return mesh.node(n).vertex == VertexId(0U); };
+  const auto wanted = [&](NodeId a, NodeId b, NodeId c, NodeId d) {
+    const bool to_pole = (a == node(10) && is_pole(b)) || (b == node(10) && is_pole(a));
+    return to_pole && !is_pole(c) && !is_pole(d);
+  };
+  std::vector<TriangleId> all, changed;
+  for (std::size_t t = 0; t < mesh.triangle_slots(); ++t) all.push_back(TriangleId(t));
+  mesh.restore(all, wanted, changed);
+  expect_valid(mesh);
+  EXPECT_TRUE(mesh.find_edge(node(11), node(12)));
+  for (NodeId p : poles) EXPECT_FALSE(mesh.find_edge(node(10), p));
+  EXPECT_FALSE(changed.empty());
+}
+
 }  // namespace
 }  // namespace curvetet
