@@ -46,11 +46,12 @@ struct ReductionReport {
   Point where{};
 };
 
-/// A small dihedral angle that the body itself forces on every mesh of it: two faces that meet in a thin wedge along an
-/// edge, or two edges of a face that meet in one at a vertex.
+/// A small dihedral angle that the body itself forces on every mesh of it with elements of this size: two faces that
+/// meet in a thin wedge along an edge, two edges of a face that meet in one at a vertex, or one face that is narrow
+/// between two edges (or vertices).
 struct ForcedAngleReport {
   std::vector<std::uint32_t> faces, edges;  ///< cad ids
-  std::uint32_t vertex = 0;                 ///< cad id of the corner; 0 for a wedge
+  std::uint32_t vertex = 0;                 ///< cad id of the corner; 0 for a wedge and a narrow face
   double angle = 0;                         ///< degrees
   std::size_t tets = 0;                     ///< below five degrees because of it
   Point where{};

@@ -1,7 +1,8 @@
 // Small dihedral angles that no mesh of the body can avoid. Two faces of a solid that meet in a thin wedge force one on
 // every tet in the wedge: the angles of the tets around a segment sum up to that of the wedge. Two curves that meet at
-// a small angle on a face force a triangle as sharp, and with it tets that are hardly better. Only few tets are small,
-// so everything is gathered around those few.
+// a small angle on a face force a triangle as sharp, and with it tets that are hardly better. A face much narrower than
+// the elements beside it forces an edge across it that is as short, and seen from the other end of its tet under as
+// small an angle. Only few tets are small, so everything is gathered around those few.
 //
 // The angle between the facets of a coarse mesh is not that of the faces, so where the CAD is at hand, it has the last
 // word: a wedge counts only if the faces themselves meet in a small angle somewhere along the segment.
@@ -80,13 +81,24 @@ class ForcedAngles {
   void collect_segments() {
     std::set<Pair> wanted;
     for (const Small& s : small_) {
-      for (std::size_t e = 0; e < 6; ++e) wanted.insert(edge(s.tet, e));
+      for (std::size_t e = 0; e < 6; ++e) {
+        wanted.insert(edge(s.tet, e));
+        if (s.angles[e] >= kSmall) continue;
+        const Pair across = edge(s.tet, 5 - e);
+        if (between_curves(across)) across_[across] = kOutside;
+      }
       for (std::size_t i = 0; i < 4; ++i) facets_[facet(s.tet, i)] = kOutside;
     }
     for (std::size_t s = 0; s < mesh_.segments.size(); ++s) {
       const Pair key = ordered(mesh_.segments[s][0], mesh_.segments[s][1]);
       if (wanted.count(key)) segments_[key] = mesh_.segment_edge[s];
     }
+  }
+
+  /// Joins vertices on two different CAD edges (or CAD vertices).
+  bool between_curves(const Pair& e) const {
+    const NodeOnCad &a = mesh_.nodes[e[0]], &b = mesh_.nodes[e[1]];
+    return a.dimension <= 1 && b.dimension <= 1 && (a.dimension != b.dimension || a.entity != b.entity);
   }
 
   Triple facet(Index tet, std::size_t i) const {
@@ -103,6 +115,7 @@ class ForcedAngles {
       if (known != facets_.end()) known->second = mesh_.triangle_face[t];
       for (std::size_t i = 0; i < 3; ++i) {
         const Pair side = ordered(v[i], v[(i + 1) % 3]);
+        if (const auto over = across_.find(side); over != across_.end()) over->second = mesh_.triangle_face[t];
         if (segments_.count(side)) walls_[{side[0], side[1], v[(i + 2) % 3]}] = mesh_.triangle_face[t];
       }
     }
@@ -124,16 +137,25 @@ class ForcedAngles {
     }
   }
 
+  static void keep_smaller(std::optional<ForcedAngle>& forced, const std::optional<ForcedAngle>& other) {
+    if (other && (!forced || other->angle < forced->angle)) forced = other;
+  }
+
   void judge(Index tet, const std::array<double, 6>& angles) {
     std::optional<ForcedAngle> forced;
     for (std::size_t e = 0; e < 6 && !forced; ++e) {
       if (angles[e] < kSmall && segments_.count(edge(tet, e))) forced = wedge(tet, edge(tet, e));
     }
     for (std::size_t i = 0; i < 4 && !forced; ++i) forced = sharp_corner(facet(tet, i));
+    for (std::size_t e = 0; e < 6; ++e) {
+      if (angles[e] >= kSmall) continue;
+      keep_smaller(forced, narrow_face(edge(tet, e), edge(tet, 5 - e)));
+    }
+    for (std::size_t i = 0; i < 4; ++i) keep_smaller(forced, needle(facet(tet, i)));
     if (!forced) return;
     const double smallest = *std::min_element(angles.begin(), angles.end());
     ++summary_.forced_below_five;
-    summary_.forced_below_half += smallest < kHalf ? 1 : 0;
+    summary_.forced_below_half += smallest < kHalf && forced->angle < kHalf ? 1 : 0;
     const auto same = std::find_if(summary_.forced.begin(), summary_.forced.end(), [&](const ForcedAngle& f) {
       return f.faces == forced->faces && f.edges == forced->edges && f.vertex == forced->vertex;
     });
@@ -227,13 +249,71 @@ class ForcedAngles {
       const Index v = facet[i], a = facet[(i + 1) % 3], b = facet[(i + 2) % 3];
       const auto ea = segments_.find(ordered(v, a)), eb = segments_.find(ordered(v, b));
       if (mesh_.nodes[v].dimension != 0 || ea == segments_.end() || eb == segments_.end()) continue;
-      const Vec3 x = at(a) - at(v), y = at(b) - at(v);
-      const double angle = degrees(std::atan2(norm(cross(x, y)), dot(x, y)));
+      const double angle = corner_angle(v, a, b);
       if (angle >= kSmall || ea->second == eb->second) continue;
       const Pair edges = ordered(ea->second, eb->second);
       return ForcedAngle{{face}, {edges[0], edges[1]}, mesh_.nodes[v].entity, angle, mesh_.points[v], 0};
     }
     return std::nullopt;
+  }
+
+  /// An edge straight across a face, from one of its curves to another, so short that even seen at a right angle from
+  /// the tet's opposite edge it makes a small angle.
+  std::optional<ForcedAngle> narrow_face(const Pair& from, const Pair& across) const {
+    const auto found = across_.find(across);
+    if (found == across_.end() || found->second == kOutside || segments_.count(across)) return std::nullopt;
+    const double angle = seen_under(from, across);
+    if (angle >= kSmall) return std::nullopt;
+    return narrow(found->second, curves_of(across), angle, 0.5 * (at(across[0]) + at(across[1])));
+  }
+
+  /// The largest angle under which an edge can be seen from the line of another as near as this, degrees.
+  double seen_under(const Pair& from, const Pair& across) const {
+    const double reach = std::min(to_line(across[0], from), to_line(across[1], from));
+    return degrees(std::atan2(distance(at(across[0]), at(across[1])), reach));
+  }
+
+  /// A triangle over a narrow face, from a segment of one curve to a vertex on another: its sharpest angle bounds the
+  /// angle of any tet over it, at the edge from that corner to the apex.
+  std::optional<ForcedAngle> needle(const Triple& facet) const {
+    const Index face = facets_.at(facet);
+    if (face == kOutside) return std::nullopt;
+    for (std::size_t i = 0; i < 3; ++i) {
+      const Index r = facet[i], p = facet[(i + 1) % 3], q = facet[(i + 2) % 3];
+      const auto segment = segments_.find(ordered(p, q));
+      const NodeOnCad& node = mesh_.nodes[r];
+      if (segment == segments_.end() || node.dimension > 1) continue;
+      if (node.dimension == 1 && node.entity == segment->second) continue;
+      const double angle = std::min(corner_angle(p, q, r), corner_angle(q, r, p));
+      if (angle >= kSmall) continue;
+      std::vector<Index> edges{segment->second};
+      if (node.dimension == 1) edges.push_back(node.entity);
+      std::sort(edges.begin(), edges.end());
+      return narrow(face, edges, angle, at(r));
+    }
+    return std::nullopt;
+  }
+
+  /// At v between the directions to a and b, degrees.
+  double corner_angle(Index v, Index a, Index b) const {
+    const Vec3 x = at(a) - at(v), y = at(b) - at(v);
+    return degrees(std::atan2(norm(cross(x, y)), dot(x, y)));
+  }
+
+  double to_line(Index v, const Pair& line) const {
+    return norm(cross(at(v) - at(line[0]), normalized(at(line[1]) - at(line[0]))));
+  }
+
+  std::vector<Index> curves_of(const Pair& ends) const {
+    std::vector<Index> edges;
+    for (Index v : ends)
+      if (mesh_.nodes[v].dimension == 1) edges.push_back(mesh_.nodes[v].entity);
+    std::sort(edges.begin(), edges.end());
+    return edges;
+  }
+
+  static ForcedAngle narrow(Index face, std::vector<Index> edges, double angle, Vec3 place) {
+    return {{face}, std::move(edges), std::nullopt, angle, {place.x, place.y, place.z}, 0};
   }
 
   const Mesh& mesh_;
@@ -242,6 +322,7 @@ class ForcedAngles {
   QualitySummary& summary_;
   std::vector<Small> small_;
   std::map<Pair, Index> segments_;               ///< of small tets, with their CAD edges
+  std::map<Pair, Index> across_;                 ///< edges between curves that small angles look at, with their face
   std::map<Triple, Index> facets_;               ///< of small tets, with their face if they are on the boundary
   std::map<Triple, Index> walls_;                ///< face of the triangle over a segment (two first) and a vertex
   std::map<Pair, std::vector<Sector>> sectors_;  ///< around each segment

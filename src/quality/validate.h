@@ -29,11 +29,12 @@ struct Histogram {
   std::vector<std::size_t> bins;  ///< equal width over [0, 1] or [0, 180]
 };
 
-/// A small dihedral angle that every mesh of the body must have: faces that meet in a thin wedge along an edge, or two
-/// edges of a face that meet in one at a vertex. Fields are entities of the mesh, ascending.
+/// A small dihedral angle that every mesh of the body with elements of this size must have: faces that meet in a thin
+/// wedge along an edge, two edges of a face that meet in one at a vertex, or a face as narrow, over the size of the
+/// tet, as the angle is small. Fields are entities of the mesh, ascending.
 struct ForcedAngle {
-  std::vector<std::uint32_t> faces;     ///< the two of the wedge, or the one with the corner
-  std::vector<std::uint32_t> edges;     ///< the one of the wedge, or the two that meet
+  std::vector<std::uint32_t> faces;     ///< the two of the wedge, the one with the corner, or the narrow one
+  std::vector<std::uint32_t> edges;     ///< the one of the wedge, the two that meet, or those on both sides
   std::optional<std::uint32_t> vertex;  ///< of the corner
   double angle = 0;                     ///< the smallest met, degrees
   Point place{};                        ///< where that is

@@ -424,6 +424,34 @@ TEST(ForcedAngles, ThinWedgeOfTwoFacesIsTheBodysOwn) {
   EXPECT_NEAR(quality.forced[0].angle, 2, 1e-9);
 }
 
+/// The thin wedge without its edge: what is thin is the face across, between two curves.
+Mesh narrow_face(std::uint32_t first_curve, std::uint32_t second_curve) {
+  Mesh mesh = thin_wedge();
+  mesh.segments.clear();
+  mesh.segment_edge.clear();
+  mesh.nodes[2] = {1, first_curve, {}};
+  mesh.nodes[3] = {1, second_curve, {}};
+  mesh.edges.push_back({2, "", {}, {}, {}});
+  return mesh;
+}
+
+TEST(ForcedAngles, AFaceNarrowerThanItsNeighboursTetsIsTheBodysOwn) {
+  Context context;
+  const QualitySummary quality = validate(narrow_face(0, 1), nullptr, 1, context).quality;
+  EXPECT_EQ(quality.forced_below_five, 1u);
+  EXPECT_EQ(quality.forced_below_half, 0u);
+  ASSERT_EQ(quality.forced.size(), 1u);
+  EXPECT_EQ(quality.forced[0].faces, std::vector<std::uint32_t>{2});
+  EXPECT_EQ(quality.forced[0].edges, (std::vector<std::uint32_t>{0, 1}));
+  EXPECT_FALSE(quality.forced[0].vertex);
+  EXPECT_NEAR(quality.forced[0].angle, 2, 1e-3);
+}
+
+TEST(ForcedAngles, AShortEdgeAlongOneCurveIsTheMeshsFault) {
+  Context context;
+  EXPECT_TRUE(validate(narrow_face(1, 1), nullptr, 1, context).quality.forced.empty());
+}
+
 TEST(ForcedAngles, FlatTetOffTheEdgesIsTheMeshsFault) {
   Mesh mesh = thin_wedge();
   mesh.segments.clear();
