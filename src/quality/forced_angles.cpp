@@ -257,14 +257,19 @@ class ForcedAngles {
     return std::nullopt;
   }
 
-  /// An edge straight across a face, from one of its curves to another, so short that even seen at a right angle from
-  /// the tet's opposite edge it makes a small angle.
+  bool is_corner(Index v) const { return mesh_.nodes[v].dimension == 0; }
+
+  /// An edge straight across a face, from one of its curves to another, or all of a CAD edge, so short that even seen
+  /// at a right angle from the tet's opposite edge it makes a small angle.
   std::optional<ForcedAngle> narrow_face(const Pair& from, const Pair& across) const {
     const auto found = across_.find(across);
-    if (found == across_.end() || found->second == kOutside || segments_.count(across)) return std::nullopt;
+    if (found == across_.end() || found->second == kOutside) return std::nullopt;
+    const auto segment = segments_.find(across);
+    if (segment != segments_.end() && !(is_corner(across[0]) && is_corner(across[1]))) return std::nullopt;
     const double angle = seen_under(from, across);
     if (angle >= kSmall) return std::nullopt;
-    return narrow(found->second, curves_of(across), angle, 0.5 * (at(across[0]) + at(across[1])));
+    const std::vector<Index> edges = segment == segments_.end() ? curves_of(across) : std::vector{segment->second};
+    return narrow(found->second, edges, angle, 0.5 * (at(across[0]) + at(across[1])));
   }
 
   /// The largest angle under which an edge can be seen from the line of another as near as this, degrees.

@@ -447,6 +447,21 @@ TEST(ForcedAngles, AFaceNarrowerThanItsNeighboursTetsIsTheBodysOwn) {
   EXPECT_NEAR(quality.forced[0].angle, 2, 1e-3);
 }
 
+TEST(ForcedAngles, ACadEdgeShorterThanItsNeighboursTetsIsTheBodysOwn) {
+  Mesh mesh = narrow_face(0, 1);
+  mesh.nodes[2] = {0, 2, {}};
+  mesh.nodes[3] = {0, 3, {}};
+  mesh.segments = {{2, 3}};
+  mesh.segment_edge = {1};
+  mesh.vertices.insert(mesh.vertices.end(), {{3, "", {}, {}, {}}, {4, "", {}, {}, {}}});
+  mesh.corner_nodes = {0, 1, 2, 3};
+  Context context;
+  const QualitySummary quality = validate(mesh, nullptr, 1, context).quality;
+  EXPECT_EQ(quality.forced_below_five, 1u);
+  ASSERT_EQ(quality.forced.size(), 1u);
+  EXPECT_EQ(quality.forced[0].edges, std::vector<std::uint32_t>{1});
+}
+
 TEST(ForcedAngles, AShortEdgeAlongOneCurveIsTheMeshsFault) {
   Context context;
   EXPECT_TRUE(validate(narrow_face(1, 1), nullptr, 1, context).quality.forced.empty());
