@@ -169,7 +169,8 @@ void describe_sizes(CLI::App& app, RawMesh& raw, Options& options) {
     app.add_option(name, value, help)->check(not_empty())->type_name("LENGTH")->group(group);
   };
   length("--size", options.size, "largest edge length; default: a tenth of the body's diagonal");
-  length("--min-size", options.min_size, "floor of derived sizes; default: a thousandth of the size");
+  length("--min-size", options.min_size,
+         "floor of derived sizes; default: a thousandth of the size, a fiftieth for the curvature of splines");
   app.add_option("--curvature", options.curvature, "elements per full turn of a curve or surface; 0: off")
       ->type_name("NUMBER")
       ->capture_default_str()

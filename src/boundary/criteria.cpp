@@ -61,6 +61,22 @@ bool upright(const Corner& a, const Corner& b, const Corner& c) {
   return !degenerate(a, b, c) && alignment(a, b, c) < kUpright;
 }
 
+/// Radon's rule of degree five on a triangle: barycentric points and weights.
+struct RulePoint {
+  double a, b, c, weight;
+};
+const std::array<RulePoint, 7> kRadon = [] {
+  const double root = std::sqrt(15.0), near = (6 - root) / 21, far = (6 + root) / 21;
+  const double light = (155 - root) / 1200, heavy = (155 + root) / 1200;
+  return std::array<RulePoint, 7>{{{1.0 / 3, 1.0 / 3, 1.0 / 3, 9.0 / 40},
+                                   {1 - 2 * near, near, near, light},
+                                   {near, 1 - 2 * near, near, light},
+                                   {near, near, 1 - 2 * near, light},
+                                   {1 - 2 * far, far, far, heavy},
+                                   {far, 1 - 2 * far, far, heavy},
+                                   {far, far, 1 - 2 * far, heavy}}};
+}();
+
 using Property = bool (*)(const Corner&, const Corner&, const Corner&);
 
 /// How many of two triangles have a property.
@@ -222,6 +238,17 @@ std::optional<Vec2> metric_centre(const Surface& surface, const Chart& chart, co
   const Vec2 centre = q[0] + *offset;
   if (!inside_chart(centre)) return std::nullopt;
   return Vec2{snap(centre.x), snap(centre.y)};
+}
+
+double facing(const Surface& surface, const Chart& chart, const std::array<Vec2, 3>& q, const std::array<Vec3, 3>& p) {
+  Vec3 mean{};
+  for (const RulePoint& at : kRadon) {
+    const SurfaceFirst s = surface.first(chart.to_uv(at.a * q[0] + at.b * q[1] + at.c * q[2]));
+    mean = mean + at.weight * cross(s.du, s.dv);
+  }
+  const Vec3 normal = cross(p[1] - p[0], p[2] - p[0]);
+  const double lengths = norm(normal) * norm(mean);
+  return lengths > 0 ? dot(normal, mean) / lengths : 1;
 }
 
 Vec3 unit_normal(const SurfaceFirst& at) {

@@ -70,6 +70,10 @@ std::optional<FacePoint> ball_centre(const Surface& surface, const Chart& chart,
 /// choice).
 std::optional<Vec2> metric_centre(const Surface& surface, const Chart& chart, const std::array<Vec2, 3>& q);
 
+/// Cosine of the angle between a triangle's normal and the mean normal, by area, of the surface over its chart
+/// triangle: not that at some point, which next to a crease says nothing of the whole. 1 where one of them vanishes.
+double facing(const Surface& surface, const Chart& chart, const std::array<Vec2, 3>& q, const std::array<Vec3, 3>& p);
+
 /// Unit normal du x dv from an evaluation, or zero where the derivatives collapse.
 Vec3 unit_normal(const SurfaceFirst& at);
 

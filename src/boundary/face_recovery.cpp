@@ -17,6 +17,8 @@ namespace curvetet {
 
 namespace {
 
+constexpr int kFlipDepth = 3;
+
 class FaceRecovery {
  public:
   FaceRecovery(Conjoint& conjoint, const FaceRecoveryOptions& options, Context& context)
@@ -109,15 +111,15 @@ class FaceRecovery {
     if (m.complete && taken) lock(face, parametric);
   }
 
+  /// What cheap flips do not reach is left to filling, which looks at a hole as a whole: ever deeper flips take their
+  /// time where there is nothing to be found.
   void reconnect_all() {
-    for (int depth : {3, 6}) {
-      for (std::size_t f = 0; f < recovered_.size(); ++f) {
-        const FaceId face(f);
-        if (recovered_[face] || context_.should_stop()) continue;
-        const ReconnectResult r = reconnect_face(conjoint_, face, depth);
-        result_.faces[face].reconnected += r.recovered;
-        if (r.missing.empty()) lock(face, surface_triangles(conjoint_.boundary().faces[face], face).size());
-      }
+    for (std::size_t f = 0; f < recovered_.size(); ++f) {
+      const FaceId face(f);
+      if (recovered_[face] || context_.should_stop()) continue;
+      const ReconnectResult r = reconnect_face(conjoint_, face, kFlipDepth);
+      result_.faces[face].reconnected += r.recovered;
+      if (r.missing.empty()) lock(face, surface_triangles(conjoint_.boundary().faces[face], face).size());
     }
     fill_missing(false);
   }

@@ -7,6 +7,7 @@
 #include <array>
 
 #include "boundary/boundary_mesh.h"
+#include "boundary/criteria.h"
 
 namespace curvetet {
 
@@ -151,12 +152,14 @@ double deviation(const Conjoint& conjoint, FaceId face, TriangleId triangle) {
 
 double facing(const Conjoint& conjoint, FaceId face, TriangleId triangle) {
   const FaceMesh& mesh = conjoint.boundary().faces[face];
-  const std::array<VertexId, 3> v = mesh.vertices(triangle);
-  const Vec3 a = conjoint.vertices().position(v[0]);
-  const Vec3 normal = cross(conjoint.vertices().position(v[1]) - a, conjoint.vertices().position(v[2]) - a);
-  const Vec3 surface = conjoint.model().faces[face].surface->normal(mesh.chart.to_uv(chart_centroid(mesh, triangle)));
-  const double lengths = norm(normal) * norm(surface);
-  return lengths > 0 ? dot(normal, surface) / lengths : 1;
+  std::array<Vec2, 3> q;
+  std::array<Vec3, 3> p;
+  for (std::size_t k = 0; k < 3; ++k) {
+    const FaceNode& node = mesh.node(mesh.triangle(triangle).node[k]);
+    q[k] = node.q;
+    p[k] = conjoint.vertices().position(node.vertex);
+  }
+  return facing(*conjoint.model().faces[face].surface, mesh.chart, q, p);
 }
 
 double segment_deviation(const Conjoint& conjoint, EdgeId edge, VertexId a, VertexId b) {

@@ -27,8 +27,7 @@ ConjointResult refine_segment(Conjoint& conjoint, EdgeId edge, VertexId a, Verte
 /// Distance from the centroid of a triangle of t_3d to the point of the surface at the same place of the chart: how far
 /// the facet is from its face.
 double deviation(const Conjoint& conjoint, FaceId face, TriangleId triangle);
-/// Cosine of the angle between the facet's normal and the surface's at the same place of the chart; 1 where either is
-/// undefined. A fold has it at or below zero.
+/// As facing in boundary/criteria.h, of a triangle of t_3d. A fold has it at or below zero.
 double facing(const Conjoint& conjoint, FaceId face, TriangleId triangle);
 /// Distance from the middle of a segment to the curve at the middle parameter.
 double segment_deviation(const Conjoint& conjoint, EdgeId edge, VertexId a, VertexId b);

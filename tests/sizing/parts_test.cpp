@@ -12,6 +12,7 @@
 #include "sizing/patch_model.h"
 #include "sizing/patch_tree.h"
 #include "support/bodies.h"
+#include "support/roof.h"
 #include "support/wriggle.h"
 
 namespace curvetet {
@@ -177,6 +178,29 @@ TEST(Bending, WithinTheToleranceOfAnEdgeItMeansNothing) {
   // A bend that the tolerance does not hide keeps its demand.
   edge.tolerance = 1e-9;
   EXPECT_LT(sizing::curve_demand(edge, curve, t, options).size, 1e-3);
+}
+
+TEST(Bending, ALipOfASplineAsksForNothingBelowTheFloor) {
+  Model model;
+  const FaceId face = test::add_piece(model, std::make_shared<test::Roof>(5, 1e-4), {-0.2, 0}, {0.2, 0.3});
+  SizingOptions options;
+  options.size = 0.1;
+  options.curvature = 12;
+  const auto demanded = [&] {
+    const sizing::FaceBending bend(model, face, options);
+    return bend.demand({0, 0.1}, sizing::bending(bend.surface(), {0, 0.1})).size;
+  };
+  EXPECT_LT(demanded(), 1e-3);
+  options.spline_floor = 2e-3;
+  EXPECT_EQ(demanded(), 2e-3);
+  const test::Wriggle curve(1e-4, 1e-3);
+  ModelEdge edge;
+  edge.high = 0.1;
+  EXPECT_EQ(sizing::curve_demand(edge, curve, 0.02525, options).size, 2e-3);
+  // A bore is what it is, however small.
+  const FaceId bore = test::add_pipe(model, {0.3, 0.3, 0}, 1e-3, 0.1);
+  const sizing::FaceBending bend(model, bore, options);
+  EXPECT_LT(bend.demand({0.1, 0.05}, sizing::bending(bend.surface(), {0.1, 0.05})).size, 1e-3);
 }
 
 }  // namespace
