@@ -34,6 +34,10 @@ constexpr double kBend = 0.175;
 constexpr double kSlant = 1;
 /// Cosine of the angle to the surface's normal below which a triangle stands upright: 60 degrees.
 constexpr double kUpright = 0.5;
+/// Cosine of the largest angle of a triangle to the surface at its corners.
+constexpr double kAligned = 0.7071;
+/// Cosine of the angle between normals at corners from which they disagree.
+constexpr double kAgree = 0.7071;
 /// Working length below which an arc is a point.
 constexpr double kNoLength = 1e-9;
 
@@ -56,9 +60,14 @@ bool flat(const Corner& a, const Corner& b, const Corner& c) {
   return std::abs(cross(r, s)) <= kFlat * std::max({norm2(r), norm2(s), norm2(s - r)});
 }
 
-/// Upright on the surface at its corners.
-bool upright(const Corner& a, const Corner& b, const Corner& c) {
-  return !degenerate(a, b, c) && alignment(a, b, c) < kUpright;
+/// Upright on the surface.
+bool upright(const Corner& a, const Corner& b, const Corner& c, const ChartSurface& on) {
+  return !degenerate(a, b, c) && alignment(a, b, c, on) < kUpright;
+}
+
+/// Normals at the corners that disagree: there is a bend within the triangle, which need not be where a corner is.
+bool disagree(Vec3 a, Vec3 b, Vec3 c) {
+  return std::min({dot(a, b), dot(b, c), dot(c, a)}) < kAgree && norm2(a) > 0 && norm2(b) > 0 && norm2(c) > 0;
 }
 
 /// Radon's rule of degree five on a triangle: barycentric points and weights.
@@ -77,9 +86,8 @@ const std::array<RulePoint, 7> kRadon = [] {
                                    {far, far, 1 - 2 * far, heavy}}};
 }();
 
-using Property = bool (*)(const Corner&, const Corner&, const Corner&);
-
 /// How many of two triangles have a property.
+template <class Property>
 int count(Property property, const Corner& a, const Corner& b, const Corner& c, const Corner& d, const Corner& e,
           const Corner& f) {
   return (property(a, b, c) ? 1 : 0) + (property(d, e, f) ? 1 : 0);
@@ -131,9 +139,28 @@ bool degenerate(const Corner& a, const Corner& b, const Corner& c) {
   return a.vertex == b.vertex || b.vertex == c.vertex || c.vertex == a.vertex;
 }
 
-double alignment(const Corner& a, const Corner& b, const Corner& c) {
+Vec3 mean_normal(const ChartSurface& on, Vec2 a, Vec2 b, Vec2 c) {
+  Vec3 mean{};
+  for (const RulePoint& at : kRadon) {
+    const SurfaceFirst s = on.surface.first(on.chart.to_uv(at.a * a + at.b * b + at.c * c));
+    mean = mean + at.weight * cross(s.du, s.dv);
+  }
+  return mean;
+}
+
+bool folded(const Corner& a, const Corner& b, const Corner& c, const ChartSurface& on) {
+  const Vec3 normal = normalized(cross(b.position - a.position, c.position - a.position));
+  const auto off = [&](const Corner& k) { return norm2(k.normal) > 0 && dot(normal, k.normal) < kAligned; };
+  if (!off(a) && !off(b) && !off(c)) return false;
+  if (!disagree(a.normal, b.normal, c.normal)) return true;
+  const Vec3 mean = mean_normal(on, a.q, b.q, c.q);
+  return dot(normal, mean) < kAligned * norm(mean);
+}
+
+double alignment(const Corner& a, const Corner& b, const Corner& c, const ChartSurface& on) {
   const Vec3 normal = cross(b.position - a.position, c.position - a.position);
-  const Vec3 mean = a.normal + b.normal + c.normal;
+  const bool ask = disagree(a.normal, b.normal, c.normal);
+  const Vec3 mean = ask ? mean_normal(on, a.q, b.q, c.q) : a.normal + b.normal + c.normal;
   const double lengths = norm(normal) * norm(mean);
   return lengths > 0 ? dot(normal, mean) / lengths : 1;
 }
@@ -164,6 +191,17 @@ bool bent(const Corner& a, const Corner& b) {
   return off_chord(offset, b.position - a.position);
 }
 
+bool confirmed_bent(const Corner& a, const Corner& b, const ChartSurface& on) {
+  if (!bent(a, b)) return false;
+  if (at_pole(a) || at_pole(b)) return true;
+  const Vec3 chord = b.position - a.position;
+  const auto off = [&](double share) {
+    const Vec2 q = a.q + share * (b.q - a.q);
+    return off_chord(on.surface.value(on.chart.to_uv(q)) - (a.position + share * chord), chord);
+  };
+  return off(0.5) || off(0.25) || off(0.75);
+}
+
 bool off_chord(Vec3 offset, Vec3 chord) {
   const double length = norm(chord);
   if (norm(cross(offset, chord)) > kBend * length * length + kNoLength * length) return true;
@@ -171,22 +209,24 @@ bool off_chord(Vec3 offset, Vec3 chord) {
   return std::abs(dot(offset, chord)) > 0.5 * length * length + kNoLength * length;
 }
 
-bool flip_improves(const Corner& a, const Corner& b, const Corner& c, const Corner& d, FlipOrder order) {
+bool flip_improves(const Corner& a, const Corner& b, const Corner& c, const Corner& d, FlipOrder order,
+                   const ChartSurface& on) {
   if (c.vertex == d.vertex) return false;
   const int flat_now = count(flat, a, b, c, b, a, d), flat_then = count(flat, a, d, c, d, b, c);
   if (flat_then != flat_now) return flat_then < flat_now;
   if (order == FlipOrder::upright_first) {
-    const int upright_now = count(upright, a, b, c, b, a, d), upright_then = count(upright, a, d, c, d, b, c);
+    const auto stands = [&on](const Corner& p, const Corner& q, const Corner& r) { return upright(p, q, r, on); };
+    const int upright_now = count(stands, a, b, c, b, a, d), upright_then = count(stands, a, d, c, d, b, c);
     if (upright_then != upright_now) return upright_then < upright_now;
   }
-  const bool bent_then = bent(c, d), bent_now = bent(a, b);
+  const bool bent_then = confirmed_bent(c, d, on), bent_now = confirmed_bent(a, b, on);
   if (bent_then && bent_now) return arc_estimate(c, d) < (1 - kFlipMargin) * arc_estimate(a, b);
   if (bent_then != bent_now) return bent_now;
   const int degenerate_now = count(degenerate, a, b, c, b, a, d), degenerate_then = count(degenerate, a, d, c, d, b, c);
   if (degenerate_then != degenerate_now) return degenerate_then < degenerate_now;
   if (degenerate_now > 0) return apex_improves(a, b, c, d);
-  const double aligned_then = std::min(alignment(a, d, c), alignment(d, b, c));
-  const double aligned_now = std::min(alignment(a, b, c), alignment(b, a, d));
+  const double aligned_then = std::min(alignment(a, d, c, on), alignment(d, b, c, on));
+  const double aligned_now = std::min(alignment(a, b, c, on), alignment(b, a, d, on));
   // A fin stands upright on the surface: thin in the chart, where a point was put on a long edge, but not in space.
   if (std::min(aligned_now, aligned_then) < kUpright) return aligned_then > aligned_now + kFlipMargin;
   return cotangent(c.position, a.position, b.position) + cotangent(d.position, a.position, b.position) < -kFlipMargin;
@@ -241,11 +281,7 @@ std::optional<Vec2> metric_centre(const Surface& surface, const Chart& chart, co
 }
 
 double facing(const Surface& surface, const Chart& chart, const std::array<Vec2, 3>& q, const std::array<Vec3, 3>& p) {
-  Vec3 mean{};
-  for (const RulePoint& at : kRadon) {
-    const SurfaceFirst s = surface.first(chart.to_uv(at.a * q[0] + at.b * q[1] + at.c * q[2]));
-    mean = mean + at.weight * cross(s.du, s.dv);
-  }
+  const Vec3 mean = mean_normal({surface, chart}, q[0], q[1], q[2]);
   const Vec3 normal = cross(p[1] - p[0], p[2] - p[0]);
   const double lengths = norm(normal) * norm(mean);
   return lengths > 0 ? dot(normal, mean) / lengths : 1;
@@ -270,9 +306,10 @@ FaceMesh::FlipWanted spatial_criterion(const FaceMesh& mesh, const VertexStore& 
     }
     return *slot;
   };
-  return [corner](NodeId a, NodeId b, NodeId c, NodeId d) {
+  return [corner, &mesh, &face](NodeId a, NodeId b, NodeId c, NodeId d) {
     corner(NodeId(std::max({a.value(), b.value(), c.value(), d.value()})));  // no resizing below: references stay good
-    return flip_improves(corner(a), corner(b), corner(c), corner(d), FlipOrder::upright_first);
+    return flip_improves(corner(a), corner(b), corner(c), corner(d), FlipOrder::upright_first,
+                         {*face.surface, mesh.chart});
   };
 }
 

@@ -23,12 +23,23 @@ struct Corner {
 };
 Corner make_corner(const FaceNode& node, Vec3 position, const SurfaceFirst& at, const Chart& chart);
 
+/// A surface over a chart, asked where the corners alone may mislead: on a sharp bend within a smooth face.
+struct ChartSurface {
+  const Surface& surface;
+  const Chart& chart;
+};
+
+/// Mean of du x dv over a chart triangle, not of unit length: each part of the surface counts by its area in space.
+Vec3 mean_normal(const ChartSurface& on, Vec2 a, Vec2 b, Vec2 c);
+
 /// True when two corners are the same vertex: the triangle is degenerate in space, though valid in the chart.
 bool degenerate(const Corner& a, const Corner& b, const Corner& c);
 
-/// Cosine of the angle between the triangle's normal and the mean of its corners' normals; 1 where one of them is
-/// undefined.
-double alignment(const Corner& a, const Corner& b, const Corner& c);
+/// Cosine of the angle between the triangle's normal and the mean of its corners' normals, or where these disagree, the
+/// surface's mean normal; 1 where one of them is undefined.
+double alignment(const Corner& a, const Corner& b, const Corner& c, const ChartSurface& on);
+/// The triangle is far from parallel to the surface at a corner, and to the surface's mean normal.
+bool folded(const Corner& a, const Corner& b, const Corner& c, const ChartSurface& on);
 
 /// Length of the surface's curve over the chart segment ab, estimated from below by the derivatives at its ends.
 double arc_estimate(const Corner& a, const Corner& b);
@@ -37,6 +48,9 @@ bool at_pole(const Corner& a);
 /// The chord of ab is no picture of its curve on the surface: by the derivatives at the ends, the curve wraps around,
 /// or its middle is far from the chord's. What lies left of the one may then lie right of the other.
 bool bent(const Corner& a, const Corner& b);
+/// Bent, and the surface between the ends confirms it: at a crease or a jump of speed the derivatives at the ends say
+/// nothing about what is between them.
+bool confirmed_bent(const Corner& a, const Corner& b, const ChartSurface& on);
 
 /// Whether a curve whose middle is at `offset` from the middle of its chord is far from being its picture.
 bool off_chord(Vec3 offset, Vec3 chord);
@@ -50,7 +64,8 @@ enum class FlipOrder : std::uint8_t { bends_first, upright_first };
 /// Whether triangles (a,b,c) and (b,a,d) should become (a,d,c) and (d,b,c). In order: fewer flat
 /// triangles, no bent edge and fewer upright triangles (in this or the other order), fewer degenerate ones, fewer that
 /// oppose the surface's normal, then Delaunay in space (angles at c and d exceed two right ones, with a margin).
-bool flip_improves(const Corner& a, const Corner& b, const Corner& c, const Corner& d, FlipOrder order);
+bool flip_improves(const Corner& a, const Corner& b, const Corner& c, const Corner& d, FlipOrder order,
+                   const ChartSurface& on);
 
 /// Radius of the smallest sphere through three points; infinite for collinear ones.
 double circumradius(Vec3 a, Vec3 b, Vec3 c);

@@ -21,7 +21,6 @@ constexpr double kRadius = 0.72;        ///< largest circumradius over size
 constexpr double kSpacing = 0.5;        ///< least distance of a new point to others over size
 constexpr double kSpacingFloor = 0.02;  ///< the same for points that cure a fold
 constexpr double kBentFloor = 0.05;     ///< least distance of points that cure bent edges, over size and usual segment
-constexpr double kAligned = 0.7071;     ///< cosine of the largest angle of a triangle to the surface at its corners
 constexpr double kSineSmallAngle = 0.342;  ///< of 20 degrees
 constexpr double kLongEdge = 1.4;          ///< an edge over size that is split when no centre can be inserted
 constexpr double kEncroachHeight = 0.45;   ///< distance over size within which a diametral sphere counts
@@ -57,7 +56,7 @@ class FaceRefiner {
     }
     measure_segments();
     wanted_ = [this](NodeId a, NodeId b, NodeId c, NodeId d) {
-      return flip_improves(corner(a), corner(b), corner(c), corner(d), order_);
+      return flip_improves(corner(a), corner(b), corner(c), corner(d), order_, {surface_, mesh_.chart});
     };
   }
 
@@ -150,7 +149,8 @@ class FaceRefiner {
     if (radius > kRadius * wanted && longest > kSpacing * wanted)
       return {Need::size, 1 + std::min(radius / wanted, 500.0)};
     // The normal turns with the radius, so a fold that is left within the size is cured at its radius or not at all.
-    if (folded(a, b, c) && radius > 2 * kSpacingFloor * wanted) return {Need::fold, std::min(0.9, radius / wanted)};
+    if (radius > 2 * kSpacingFloor * wanted && folded(a, b, c, {surface_, mesh_.chart}))
+      return {Need::fold, std::min(0.9, radius / wanted)};
     if (radius > kSpacing * wanted && shortest < 2 * kSineSmallAngle * radius)
       return {Need::shape, 0.01 * radius / wanted};
     return {};
@@ -158,12 +158,6 @@ class FaceRefiner {
 
   /// Edges to a pole are flipped when they are askew; points on them would only come nearer to the pole.
   static bool must_split(const Corner& a, const Corner& b) { return !at_pole(a) && !at_pole(b) && bent(a, b); }
-
-  static bool folded(const Corner& a, const Corner& b, const Corner& c) {
-    const Vec3 normal = normalized(cross(b.position - a.position, c.position - a.position));
-    const auto off = [&](const Corner& k) { return norm2(k.normal) > 0 && dot(normal, k.normal) < kAligned; };
-    return off(a) || off(b) || off(c);
-  }
 
   void refine(TriangleId id) {
     Verdict verdict = judge(id, true);
