@@ -124,16 +124,6 @@ class FaceRecovery {
     fill_missing(false);
   }
 
-  std::vector<SurfaceTriangle> missing_triangles(FaceId face) const {
-    std::vector<SurfaceTriangle> missing;
-    for (const SurfaceTriangle& t : surface_triangles(conjoint_.boundary().faces[face], face)) {
-      const auto f = tets_.find_facet(t.vertices[0], t.vertices[1], t.vertices[2]);
-      const FaceId owner = f ? tets_.complex().locked_face(*f) : FaceId();
-      if (!f || (owner.valid() && owner != face)) missing.push_back(t);
-    }
-    return missing;
-  }
-
   bool refine_missing() {
     std::size_t inserted = refine_pass();
     if (inserted == 0 && fill_missing(true) > 0) return true;
@@ -155,7 +145,8 @@ class FaceRecovery {
       result_.faces[face].reconnected += filled.recovered;
       result_.volume_points += filled.points;
       recovered += filled.recovered;
-      if (missing_triangles(face).empty()) lock(face, surface_triangles(conjoint_.boundary().faces[face], face).size());
+      if (missing_triangles(conjoint_, face).empty())
+        lock(face, surface_triangles(conjoint_.boundary().faces[face], face).size());
     }
     return recovered;
   }
@@ -169,7 +160,7 @@ class FaceRecovery {
     for (std::size_t f = 0; f < recovered_.size(); ++f) {
       const FaceId face(f);
       if (recovered_[face]) continue;
-      for (const SurfaceTriangle& t : missing_triangles(face)) {
+      for (const SurfaceTriangle& t : missing_triangles(conjoint_, face)) {
         const FaceMesh& mesh = conjoint_.boundary().faces[face];
         if (!mesh.triangle(t.triangle).alive() || mesh.vertices(t.triangle) != t.vertices) continue;
         if (refine_triangle(conjoint_, face, t.triangle, refinement).ok()) ++inserted;
@@ -182,7 +173,7 @@ class FaceRecovery {
     for (std::size_t f = 0; f < recovered_.size(); ++f) {
       const FaceId face(f);
       if (recovered_[face]) continue;
-      const auto missing = missing_triangles(face);
+      const auto missing = missing_triangles(conjoint_, face);
       if (missing.empty()) {  // unlocked only to make room for others
         lock(face, surface_triangles(conjoint_.boundary().faces[face], face).size());
         continue;

@@ -9,12 +9,14 @@
 
 #include "boundary/boundary_mesh.h"
 #include "boundary/edge_recovery.h"
+#include "boundary/fill_holes.h"
 #include "boundary/reconnect.h"
 
 namespace curvetet {
 
 namespace {
 
+constexpr int kFlipDepth = 3;
 constexpr int kPatience = 12;  // iterations without a better march before the fallback
 
 class PaperRecovery {
@@ -155,19 +157,28 @@ class PaperRecovery {
     locked_[face] = true;
   }
 
+  // Facet by facet, by flips and then by filling; a face that needs it is counted.
   void fall_back(FaceId face) {
-    out_.recovery.faces[face].fallback = true;
+    FaceCertificate& certificate = out_.recovery.faces[face];
+    certificate.fallback = true;
     ++out_.counts.fallback_faces;
-    const ReconnectResult r = reconnect_face(conjoint_, face, 6);
-    out_.recovery.faces[face].reconnected += r.recovered;
-    if (r.missing.empty()) {
+    certificate.reconnected += reconnect_face(conjoint_, face, kFlipDepth).recovered;
+    for (std::size_t last = 0, left = missing_triangles(conjoint_, face).size(); left > 0 && left != last;) {
+      const FillResult filled = fill_holes(conjoint_, face, true);
+      certificate.reconnected += filled.recovered;
+      out_.recovery.volume_points += filled.points;
+      last = left;
+      left = missing_triangles(conjoint_, face).size();
+    }
+    const std::vector<SurfaceTriangle> missing = missing_triangles(conjoint_, face);
+    if (missing.empty()) {
       lock(face, surface_triangles(conjoint_.boundary().faces[face], face).size());
       return;
     }
     RecoveryFailure failure;
     failure.faces = {face};
-    failure.what = fmt::format("{} facets are not recovered, not even one by one", r.missing.size());
-    const SurfaceTriangle& t = r.missing.front();
+    failure.what = fmt::format("{} facets are not recovered, not even one by one", missing.size());
+    const SurfaceTriangle& t = missing.front();
     for (VertexId v : t.vertices) failure.where = failure.where + (1.0 / 3) * conjoint_.vertices().position(v);
     failure.size =
         0.5 * distance(conjoint_.vertices().position(t.vertices[0]), conjoint_.vertices().position(t.vertices[1]));

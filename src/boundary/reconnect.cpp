@@ -70,6 +70,17 @@ class Reconnection {
 
 }  // namespace
 
+std::vector<SurfaceTriangle> missing_triangles(const Conjoint& conjoint, FaceId face) {
+  const Tetrahedralization& tets = *conjoint.tets();
+  std::vector<SurfaceTriangle> missing;
+  for (const SurfaceTriangle& t : surface_triangles(conjoint.boundary().faces[face], face)) {
+    const auto f = tets.find_facet(t.vertices[0], t.vertices[1], t.vertices[2]);
+    const FaceId owner = f ? tets.complex().locked_face(*f) : FaceId();
+    if (!f || (owner.valid() && owner != face)) missing.push_back(t);
+  }
+  return missing;
+}
+
 ReconnectResult reconnect_face(Conjoint& conjoint, FaceId face, int depth) {
   return Reconnection(conjoint, face, depth).run();
 }

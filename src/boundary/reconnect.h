@@ -9,6 +9,9 @@
 
 namespace curvetet {
 
+/// The triangles of the face's t_3d that are no facets, or facets that another face has locked.
+std::vector<SurfaceTriangle> missing_triangles(const Conjoint& conjoint, FaceId face);
+
 struct ReconnectResult {
   std::size_t recovered = 0;             ///< facets that now exist
   std::vector<SurfaceTriangle> missing;  ///< triangles that still do not
