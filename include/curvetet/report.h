@@ -64,7 +64,7 @@ struct RecoveryCounts {
   std::size_t volume_points = 0;  ///< put into the volume to fill a hole that no reconnection closed
   int rounds = 0;
   std::size_t stage_one_points = 0, stage_one_allowed = 0, stage_two_points = 0;
-  std::size_t case1 = 0, case3a = 0, case3b = 0, case4 = 0, fallback_faces = 0;
+  std::size_t case1 = 0, case2 = 0, case3a = 0, case3b = 0, case4 = 0, fallback_faces = 0;
 };
 
 struct Report {

@@ -11,11 +11,13 @@
 #include "boundary/edge_recovery.h"
 #include "boundary/fill_holes.h"
 #include "boundary/reconnect.h"
+#include "boundary/simplicial.h"
 
 namespace curvetet {
 
 namespace {
 
+constexpr int kSimplicialRounds = 8;
 constexpr int kFlipDepth = 3;
 constexpr int kPatience = 12;  // iterations without a better march before the fallback
 
@@ -35,6 +37,7 @@ class PaperRecovery {
     if (!edges.ok()) return edges.error();
     const Status first = paper_stage_one(conjoint_, options_.floor, out_.counts, context_);
     if (!first.ok()) return first.error();
+    refine_edges_used_too_often();
     for (std::size_t f = 0; f < locked_.size() && out_.recovery.failures.empty(); ++f) {
       const Status done = recover(FaceId(f));
       if (!done.ok()) return done.error();
@@ -87,8 +90,22 @@ class PaperRecovery {
     return Done{};
   }
 
-  // Remeshing cases 1, 3a, 3b and 4 of section 3.4. Case 2 (an edge that t_3d would use four times) shows as a missing
-  // triangle whose facet is taken, and is met by case 3a.
+  // Case 2 of section 3.4: an edge that t_3d uses four times (Fig. 12). There is none in the first surface mesh, but
+  // the points of the first stage may have made one.
+  void refine_edges_used_too_often() {
+    const std::size_t before = conjoint_.vertices().size();
+    for (const Offence& o : make_simplicial(conjoint_, kSimplicialRounds, context_)) {
+      RecoveryFailure failure;
+      failure.faces = {o.face};
+      failure.where = conjoint_.vertices().position(o.a);
+      failure.size = 0.5 * distance(failure.where, conjoint_.vertices().position(o.b));
+      failure.what = describe(o, conjoint_.model());
+      out_.recovery.failures.push_back(std::move(failure));
+    }
+    out_.counts.case2 += conjoint_.vertices().size() - before;
+  }
+
+  // Remeshing cases 1, 3a, 3b and 4 of section 3.4.
   bool remesh(FaceId face, const MarchResult& m) {
     std::size_t inserted = 0;
     if (m.seeds == 0) {

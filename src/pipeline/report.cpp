@@ -35,6 +35,7 @@ Json recovery_json(const RecoveryCounts& counts) {
           {"stage_one_allowed", counts.stage_one_allowed},
           {"stage_two_points", counts.stage_two_points},
           {"case_1", counts.case1},
+          {"case_2", counts.case2},
           {"case_3a", counts.case3a},
           {"case_3b", counts.case3b},
           {"case_4", counts.case4},

@@ -152,6 +152,7 @@ void report_body(Report& report, const Model& model, const Settings& settings, c
   c.stage_one_allowed = mesh.paper.stage_one_allowed;
   c.stage_two_points = mesh.recovery.points;
   c.case1 = mesh.paper.case1;
+  c.case2 = mesh.paper.case2;
   c.case3a = mesh.paper.case3a;
   c.case3b = mesh.paper.case3b;
   c.case4 = mesh.paper.case4;
