@@ -11,6 +11,7 @@
 #include <map>
 #include <set>
 
+#include "commands.h"
 #include "curvetet/curvetet.h"
 
 namespace curvetet::cli {
@@ -131,6 +132,7 @@ void finish_mesh(const RawMesh& raw, MeshCommand& command) {
   options.refine_interior = !raw.no_refine;
   options.improve = !raw.no_improve;
   options.isolate_cad = !raw.no_isolate;
+  options.cad_helper = own_program();
 }
 
 void finish_picture(const RawPicture& raw, PictureCommand& command) {

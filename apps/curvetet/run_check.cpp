@@ -105,6 +105,7 @@ int run_check(const CheckCommand& command) {
     LoadOptions options;
     options.input_unit = command.input_unit;
     options.isolate = command.isolate;
+    options.helper = own_program();
     options.overlaps = command.overlaps;
     Result<Model> loaded = load_model(command.cad, options, context);
     if (!loaded) return show_error(loaded.error());

@@ -37,6 +37,7 @@ struct Options {
   std::string input_unit;  ///< of BREP files and shapes in memory, which carry none; default: mm
   Overlaps overlaps = Overlaps::refuse;
   bool isolate_cad = true;  ///< read and heal in a helper process
+  std::string cad_helper;   ///< the curvetet program that helps; default: this one, or one beside it, if so named
 
   RecoveryMode recovery = RecoveryMode::conjoint;
   bool refine_interior = true;

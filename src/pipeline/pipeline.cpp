@@ -157,6 +157,7 @@ Result<MeshOutput> mesh(const Input& input, const Options& options, Context& con
     LoadOptions load;
     load.input_unit = options.input_unit;
     load.isolate = options.isolate_cad;
+    load.helper = options.cad_helper;
     load.overlaps = options.overlaps;
     if (options.time_limit) load.isolate_time_limit = std::max(load.isolate_time_limit, *options.time_limit);
     return load_model(input.path, load, while_loading);

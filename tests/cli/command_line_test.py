@@ -303,6 +303,18 @@ class InfoAndPicture(CommandLineTest):
         self.expect(3, "picture", mesh, "-o", self.folder / "no/a.png")
 
 
+class Renamed(CommandLineTest):
+    def test_a_program_by_another_name_still_reads_in_a_helper(self):
+        other = self.folder / "mesher"
+        other.write_bytes(pathlib.Path(PROGRAM).read_bytes())
+        other.chmod(0o755)
+        mesh = self.folder / "plate.msh"
+        command = [other, "mesh", BODIES / "plate.step", "-o", mesh, "-v"]
+        result = subprocess.run(command, stdin=subprocess.DEVNULL, capture_output=True, text=True, timeout=PATIENCE)
+        self.assertEqual(result.returncode, 0, result.stderr)
+        self.assertNotIn("in this process", result.stderr)
+
+
 class InvalidMeshes(CommandLineTest):
     def test_check_finds_an_inverted_tet(self):
         mesh, _ = self.mesh_plate("--format", "msh22")
