@@ -22,15 +22,14 @@ def read(folder, divide):
         if row["divide"] != divide:
             continue
         name = pathlib.Path(row["body"]).name
-        report = folder / f"{name}.{divide:g}.report.json"
-        row["report"] = json.loads(report.read_text()) if report.exists() else {}
+        if row["status"] == "valid":
+            row["report"] = json.loads((folder / f"{name}.{divide:g}.report.json").read_text())
         rows[name] = row
     return rows
 
 
 def added(row, *keys):
-    recovery = row["report"].get("recovery", {})
-    return sum(recovery.get(key, 0) for key in keys)
+    return sum(row["report"]["recovery"][key] for key in keys)
 
 
 def short_cause(row):

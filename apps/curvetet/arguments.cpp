@@ -11,8 +11,8 @@
 #include <map>
 #include <set>
 
-#include "commands.h"
 #include "curvetet/curvetet.h"
+#include "own_program.h"
 
 namespace curvetet::cli {
 
@@ -172,7 +172,7 @@ void describe_sizes(CLI::App& app, RawMesh& raw, Options& options) {
   };
   length("--size", options.size, "largest edge length; default: a tenth of the body's diagonal");
   length("--min-size", options.min_size,
-         "floor of derived sizes; default: a thousandth of the size, a fiftieth for the curvature of splines");
+         "floor of derived sizes; default: a thousandth of the size, a fiftieth for the curvature of free forms");
   app.add_option("--curvature", options.curvature, "elements per full turn of a curve or surface; 0: off")
       ->type_name("NUMBER")
       ->capture_default_str()

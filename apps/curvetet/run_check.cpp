@@ -6,6 +6,7 @@
 
 #include "cad/load.h"
 #include "commands.h"
+#include "own_program.h"
 #include "pipeline/settings.h"
 #include "quality/validate.h"
 #include "terminal.h"

@@ -1,19 +1,12 @@
 #include <fmt/format.h>
 
-#include <filesystem>
-
 #include "cad/load.h"
 #include "commands.h"
 #include "geometry/describe.h"
+#include "own_program.h"
 #include "terminal.h"
 
 namespace curvetet::cli {
-
-std::string own_program() {
-  std::error_code code;
-  const std::filesystem::path self = std::filesystem::read_symlink("/proc/self/exe", code);
-  return code ? std::string() : self.string();
-}
 
 int run_info(const InfoCommand& command) {
   Context context;

@@ -24,9 +24,10 @@ enum class RecoveryMode { conjoint, paper };
 enum class Overlaps { refuse, split };
 
 struct Options {
-  std::optional<double> size;      ///< largest edge length; default: a tenth of the body's diagonal
-  std::optional<double> min_size;  ///< floor of derived sizes; default: size / 1000, size / 50 for curvature of splines
-  double curvature = 12;           ///< elements per full turn; 0: off
+  std::optional<double> size;  ///< largest edge length; default: a tenth of the body's diagonal
+  std::optional<double>
+      min_size;           ///< floor of derived sizes; default: size / 1000, size / 50 for curvature of free forms
+  double curvature = 12;  ///< elements per full turn; 0: off
   std::optional<double> chord_height;  ///< largest distance of a chord to its arc; default: off
   double grading = 0.5;                ///< growth of the size per length, > 0
   bool gaps = true;                    ///< chord height at most a quarter of the local gap

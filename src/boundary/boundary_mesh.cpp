@@ -15,8 +15,6 @@ namespace curvetet {
 
 namespace {
 
-constexpr int kSimplicialRounds = 10;
-
 /// Faces in the order of falling area, so that the largest do not come last to an idle machine.
 std::vector<std::size_t> by_area(const Model& model) {
   std::vector<std::size_t> order(model.faces.size());
@@ -73,7 +71,7 @@ Result<BoundaryResult> mesh_boundary(const Model& model, const SizeField& sizes,
   }
   Conjoint conjoint(model, vertices, mesh,
                     [&](FaceId face) { return spatial_criterion(mesh.faces[face], vertices, model.faces[face]); });
-  for (const Offence& offence : make_simplicial(conjoint, kSimplicialRounds, context)) {
+  for (const Offence& offence : make_simplicial(conjoint, context)) {
     result.failures.push_back({offence.face, "not simplicial", describe(offence, model), vertices.position(offence.a)});
   }
   if (context.should_stop()) return context.stop_error("face meshes");

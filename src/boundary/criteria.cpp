@@ -70,6 +70,12 @@ bool disagree(Vec3 a, Vec3 b, Vec3 c) {
   return std::min({dot(a, b), dot(b, c), dot(c, a)}) < kAgree && norm2(a) > 0 && norm2(b) > 0 && norm2(c) > 0;
 }
 
+/// Of the angle between two vectors; 1 where one vanishes.
+double cosine(Vec3 a, Vec3 b) {
+  const double lengths = norm(a) * norm(b);
+  return lengths > 0 ? dot(a, b) / lengths : 1;
+}
+
 /// Radon's rule of degree five on a triangle: barycentric points and weights.
 struct RulePoint {
   double a, b, c, weight;
@@ -133,6 +139,18 @@ bool apex_improves(const Corner& a, const Corner& b, const Corner& c, const Corn
   return false;
 }
 
+/// As bent, for edges around a pole, where the chart turns: a chart edge goes around it in an arc while the chord does
+/// not, and with few nodes around the pole none is straight. So what the middle is off along the surface does not
+/// count.
+bool bent_beside_pole(const Corner& a, const Corner& b, const ChartSurface& on) {
+  if (at_pole(a) || at_pole(b)) return bent(a, b);
+  const Vec3 chord = b.position - a.position;
+  if (arc_estimate(a, b) > kWrap * norm(chord) + kNoLength) return true;
+  const Vec3 middle = on.surface.value(on.chart.to_uv(0.5 * (a.q + b.q)));
+  const Vec3 normal = normalized(a.normal + b.normal);
+  return std::abs(dot(middle - a.position - 0.5 * chord, normal)) > kBend * norm(chord);
+}
+
 }  // namespace
 
 bool degenerate(const Corner& a, const Corner& b, const Corner& c) {
@@ -161,8 +179,7 @@ double alignment(const Corner& a, const Corner& b, const Corner& c, const ChartS
   const Vec3 normal = cross(b.position - a.position, c.position - a.position);
   const bool ask = disagree(a.normal, b.normal, c.normal);
   const Vec3 mean = ask ? mean_normal(on, a.q, b.q, c.q) : a.normal + b.normal + c.normal;
-  const double lengths = norm(normal) * norm(mean);
-  return lengths > 0 ? dot(normal, mean) / lengths : 1;
+  return cosine(normal, mean);
 }
 
 Corner make_corner(const FaceNode& node, Vec3 position, const SurfaceFirst& at, const Chart& chart) {
@@ -219,7 +236,11 @@ bool flip_improves(const Corner& a, const Corner& b, const Corner& c, const Corn
     const int upright_now = count(stands, a, b, c, b, a, d), upright_then = count(stands, a, d, c, d, b, c);
     if (upright_then != upright_now) return upright_then < upright_now;
   }
-  const bool bent_then = confirmed_bent(c, d, on), bent_now = confirmed_bent(a, b, on);
+  const bool pole = at_pole(a) || at_pole(b) || at_pole(c) || at_pole(d);
+  const auto bends = [&](const Corner& p, const Corner& q) {
+    return pole ? bent_beside_pole(p, q, on) : confirmed_bent(p, q, on);
+  };
+  const bool bent_then = bends(c, d), bent_now = bends(a, b);
   if (bent_then && bent_now) return arc_estimate(c, d) < (1 - kFlipMargin) * arc_estimate(a, b);
   if (bent_then != bent_now) return bent_now;
   const int degenerate_now = count(degenerate, a, b, c, b, a, d), degenerate_then = count(degenerate, a, d, c, d, b, c);
@@ -283,8 +304,7 @@ std::optional<Vec2> metric_centre(const Surface& surface, const Chart& chart, co
 double facing(const Surface& surface, const Chart& chart, const std::array<Vec2, 3>& q, const std::array<Vec3, 3>& p) {
   const Vec3 mean = mean_normal({surface, chart}, q[0], q[1], q[2]);
   const Vec3 normal = cross(p[1] - p[0], p[2] - p[0]);
-  const double lengths = norm(normal) * norm(mean);
-  return lengths > 0 ? dot(normal, mean) / lengths : 1;
+  return cosine(normal, mean);
 }
 
 Vec3 unit_normal(const SurfaceFirst& at) {

@@ -14,8 +14,6 @@ namespace curvetet {
 
 namespace {
 
-constexpr int kLastDepth = 6;  // of flips, where nothing else is left
-
 class EdgeRecovery {
  public:
   EdgeRecovery(Conjoint& conjoint, const EdgeRecoveryOptions& options, Context& context)
@@ -92,11 +90,11 @@ class EdgeRecovery {
     queue.push_back({s.edge, done.vertex, s.b});
   }
 
-  // A segment at the floor of spacing: flips are what is left, also where splitting is the rule.
+  // A segment at the floor of spacing: flips and filling are what is left, also where splitting is the rule.
   void reconnect_or_fail(const Conjoint::Segment& s, ConjointRefusal refusal) {
-    if (recover_edge_by_flips(tets_, s.a, s.b, kLastDepth)) {
+    if (recover_edge_by_flips(tets_, s.a, s.b)) {
       ++result_.flipped;
-    } else if (const FillResult filled = fill_around_segment(conjoint_, s, true); filled.recovered > 0) {
+    } else if (const FillResult filled = fill_around_segment(conjoint_, s); filled.recovered > 0) {
       ++result_.filled;
       result_.volume_points += filled.points;
     } else {

@@ -1,6 +1,7 @@
-// A round: segments, then a march over every face that is not locked, then reconnection by flips for the faces the
-// march left, then one vertex for each triangle that is still missing. A face is locked as soon as it is complete, so
-// that what is recovered stays recovered; a curve that must be split unlocks the faces on it, which is counted.
+// A round: segments, then a march over every face that is not locked, then reconnection by flips and filling for the
+// faces the march left, then one vertex for each triangle that is still missing; where none may be put on the surface,
+// filling with points in the volume. A face is locked as soon as it is complete, so that what is recovered stays
+// recovered; a curve that must be split unlocks the faces on it, which is counted.
 // Rejected: refining before reconnecting. It converges too, but to a mesh much finer than asked wherever faces meet at
 // small angles.
 #include "boundary/face_recovery.h"
@@ -16,8 +17,6 @@
 namespace curvetet {
 
 namespace {
-
-constexpr int kFlipDepth = 3;
 
 class FaceRecovery {
  public:
@@ -111,13 +110,12 @@ class FaceRecovery {
     if (m.complete && taken) lock(face, parametric);
   }
 
-  /// What cheap flips do not reach is left to filling, which looks at a hole as a whole: ever deeper flips take their
-  /// time where there is nothing to be found.
+  /// What flips do not reach is left to filling, which looks at a hole as a whole.
   void reconnect_all() {
     for (std::size_t f = 0; f < recovered_.size(); ++f) {
       const FaceId face(f);
       if (recovered_[face] || context_.should_stop()) continue;
-      const ReconnectResult r = reconnect_face(conjoint_, face, kFlipDepth);
+      const ReconnectResult r = reconnect_face(conjoint_, face);
       result_.faces[face].reconnected += r.recovered;
       if (r.missing.empty()) lock(face, surface_triangles(conjoint_.boundary().faces[face], face).size());
     }
@@ -126,8 +124,9 @@ class FaceRecovery {
 
   bool refine_missing() {
     std::size_t inserted = refine_pass();
-    if (inserted == 0 && fill_missing(true) > 0) return true;
-    if (inserted == 0) {  // the locks of other faces are in the way
+    if (inserted == 0) {
+      if (fill_missing(true) > 0) return true;
+      // The locks of other faces are in the way.
       for (std::size_t f = 0; f < recovered_.size(); ++f) unlock(FaceId(f));
       inserted = refine_pass();
     }

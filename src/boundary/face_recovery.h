@@ -4,7 +4,7 @@
 // Before: valid face meshes free of crossings, all their vertices in the tetrahedralization, segments recovered and
 // kept. After (complete): for each face the triangles of t_ps are facets of the tetrahedralization, locked for the
 // face; no locked facet was ever split while locked. Terminates: rounds are bounded, every round inserts at least one
-// vertex above the floor.
+// vertex above the floor or recovers a facet.
 #pragma once
 
 #include <cstdint>
@@ -22,7 +22,7 @@ struct FaceCertificate {
   std::set<FacetKey> marched;    ///< facets that the march put in the place of triangles of t_3d
   std::vector<FacetKey> locked;  ///< T_Γ when it was locked last, sorted
   std::size_t parametric = 0;    ///< triangles of t_3d whose place T_Γ took then
-  std::size_t reconnected = 0;   ///< facets recovered by flips, without points
+  std::size_t reconnected = 0;   ///< facets recovered by flips and filling, without points on the surface
   std::size_t unlocks = 0;
   bool fallback = false;
 };

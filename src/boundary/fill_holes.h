@@ -17,9 +17,9 @@ struct FillResult {
 /// of other faces and kept segments stay. Terminates: one attempt for each hole.
 FillResult fill_holes(Conjoint& conjoint, FaceId face, bool with_points);
 
-/// Makes a missing segment an edge, together with the surface triangles of all faces around it; those must not cross
-/// others.
-FillResult fill_around_segment(Conjoint& conjoint, const Conjoint::Segment& segment, bool with_points);
+/// Makes a missing segment an edge, together with the surface triangles of all faces around it, with points only if it
+/// does not go without; the triangles must not cross others.
+FillResult fill_around_segment(Conjoint& conjoint, const Conjoint::Segment& segment);
 
 /// Gives each point in the volume to the solid it was classified into.
 void own_points(Conjoint& conjoint);

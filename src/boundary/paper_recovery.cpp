@@ -17,8 +17,6 @@ namespace curvetet {
 
 namespace {
 
-constexpr int kSimplicialRounds = 8;
-constexpr int kFlipDepth = 3;
 constexpr int kPatience = 12;  // iterations without a better march before the fallback
 
 class PaperRecovery {
@@ -94,7 +92,7 @@ class PaperRecovery {
   // the points of the first stage may have made one.
   void refine_edges_used_too_often() {
     const std::size_t before = conjoint_.vertices().size();
-    for (const Offence& o : make_simplicial(conjoint_, kSimplicialRounds, context_)) {
+    for (const Offence& o : make_simplicial(conjoint_, context_)) {
       RecoveryFailure failure;
       failure.faces = {o.face};
       failure.where = conjoint_.vertices().position(o.a);
@@ -102,7 +100,9 @@ class PaperRecovery {
       failure.what = describe(o, conjoint_.model());
       out_.recovery.failures.push_back(std::move(failure));
     }
-    out_.counts.case2 += conjoint_.vertices().size() - before;
+    // The store keeps refused vertices, too.
+    for (std::size_t v = before; v < conjoint_.vertices().size(); ++v)
+      out_.counts.case2 += tets_.contains(VertexId(v)) ? 1U : 0U;
   }
 
   // Remeshing cases 1, 3a, 3b and 4 of section 3.4.
@@ -179,13 +179,15 @@ class PaperRecovery {
     FaceCertificate& certificate = out_.recovery.faces[face];
     certificate.fallback = true;
     ++out_.counts.fallback_faces;
-    certificate.reconnected += reconnect_face(conjoint_, face, kFlipDepth).recovered;
-    for (std::size_t last = 0, left = missing_triangles(conjoint_, face).size(); left > 0 && left != last;) {
-      const FillResult filled = fill_holes(conjoint_, face, true);
-      certificate.reconnected += filled.recovered;
-      out_.recovery.volume_points += filled.points;
-      last = left;
-      left = missing_triangles(conjoint_, face).size();
+    certificate.reconnected += reconnect_face(conjoint_, face).recovered;
+    for (std::size_t recovered = 1; recovered > 0 && !context_.should_stop();) {
+      recovered = 0;
+      for (const bool with_points : {false, true}) {
+        const FillResult filled = fill_holes(conjoint_, face, with_points);
+        recovered += filled.recovered;
+        out_.recovery.volume_points += filled.points;
+      }
+      certificate.reconnected += recovered;
     }
     const std::vector<SurfaceTriangle> missing = missing_triangles(conjoint_, face);
     if (missing.empty()) {

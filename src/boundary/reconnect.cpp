@@ -2,6 +2,7 @@
 // The existing facets of the face are locked for the time being, so that one gain does not undo another.
 #include "boundary/reconnect.h"
 
+#include "boundary/temporary_locks.h"
 #include "spatial/flips.h"
 
 namespace curvetet {
@@ -10,41 +11,23 @@ namespace {
 
 class Reconnection {
  public:
-  Reconnection(Conjoint& conjoint, FaceId face, int depth)
-      : tets_(*conjoint.tets()), mesh_(conjoint.boundary().faces[face]), face_(face), depth_(depth) {}
+  Reconnection(Conjoint& conjoint, FaceId face)
+      : tets_(*conjoint.tets()), mesh_(conjoint.boundary().faces[face]), face_(face), locks_(tets_, face) {}
 
   ReconnectResult run() {
     for (const SurfaceTriangle& t : surface_triangles(mesh_, face_))
-      if (!protect(t)) missing_.push_back(t);
+      if (!locks_.add(t)) missing_.push_back(t);
     for (const SurfaceTriangle& t : missing_)
       for (std::size_t k = 0; k < 3; ++k) recover_edge(t.vertices[k], t.vertices[(k + 1) % 3]);
     for (const SurfaceTriangle& t : missing_) recover_facet(t);
     for (const auto& [a, b] : kept_) tets_.release_segment(a, b);
-    for (const TetFacet& f : locked_facets()) tets_.complex().unlock(f);
     return std::move(result_);
   }
 
  private:
-  bool protect(const SurfaceTriangle& t) {
-    const auto facet = tets_.find_facet(t.vertices[0], t.vertices[1], t.vertices[2]);
-    if (!facet) return false;
-    const FaceId owner = tets_.complex().locked_face(*facet);
-    if (owner.valid()) return owner == face_;
-    tets_.lock(*facet, face_);
-    locked_.push_back(t);
-    return true;
-  }
-
-  std::vector<TetFacet> locked_facets() const {
-    std::vector<TetFacet> facets;
-    for (const SurfaceTriangle& t : locked_)
-      if (const auto f = tets_.find_facet(t.vertices[0], t.vertices[1], t.vertices[2])) facets.push_back(*f);
-    return facets;
-  }
-
   void recover_edge(VertexId a, VertexId b) {
     if (tets_.is_kept(a, b)) return;
-    if (!tets_.find_edge(a, b) && !recover_edge_by_flips(tets_, a, b, depth_)) return;
+    if (!tets_.find_edge(a, b) && !recover_edge_by_flips(tets_, a, b)) return;
     tets_.keep_segment(a, b);
     kept_.emplace_back(a, b);
   }
@@ -53,7 +36,7 @@ class Reconnection {
     const auto& v = t.vertices;
     bool edges = true;
     for (std::size_t k = 0; k < 3; ++k) edges = edges && tets_.find_edge(v[k], v[(k + 1) % 3]).has_value();
-    if (edges && recover_facet_by_flips(tets_, v[0], v[1], v[2], depth_) && protect(t))
+    if (edges && recover_facet_by_flips(tets_, v[0], v[1], v[2]) && locks_.add(t))
       ++result_.recovered;
     else
       result_.missing.push_back(t);
@@ -62,9 +45,9 @@ class Reconnection {
   Tetrahedralization& tets_;
   const FaceMesh& mesh_;
   FaceId face_;
-  int depth_;
+  TemporaryLocks locks_;
   ReconnectResult result_;
-  std::vector<SurfaceTriangle> missing_, locked_;
+  std::vector<SurfaceTriangle> missing_;
   std::vector<std::pair<VertexId, VertexId>> kept_;
 };
 
@@ -81,8 +64,6 @@ std::vector<SurfaceTriangle> missing_triangles(const Conjoint& conjoint, FaceId 
   return missing;
 }
 
-ReconnectResult reconnect_face(Conjoint& conjoint, FaceId face, int depth) {
-  return Reconnection(conjoint, face, depth).run();
-}
+ReconnectResult reconnect_face(Conjoint& conjoint, FaceId face) { return Reconnection(conjoint, face).run(); }
 
 }  // namespace curvetet

@@ -20,6 +20,6 @@ struct ReconnectResult {
 /// Recovers the edges, then the facets of all missing triangles of the face by flips. Facets of the face that exist
 /// already are protected. The tetrahedralization stays valid whatever happens; nothing is locked afterwards that was
 /// not before. Terminates as the flips do (spatial/flips.h); one attempt for each edge and facet.
-ReconnectResult reconnect_face(Conjoint& conjoint, FaceId face, int depth);
+ReconnectResult reconnect_face(Conjoint& conjoint, FaceId face);
 
 }  // namespace curvetet

@@ -14,6 +14,8 @@ namespace curvetet {
 
 namespace {
 
+constexpr int kRounds = 10;
+
 struct Sided {
   std::uint64_t key;
   FaceId face;
@@ -209,9 +211,9 @@ std::string describe(const Offence& offence, const Model& model) {
   return at;
 }
 
-std::vector<Offence> make_simplicial(Conjoint& conjoint, int rounds, const Context& context) {
+std::vector<Offence> make_simplicial(Conjoint& conjoint, const Context& context) {
   std::vector<Offence> offences = find_offences(conjoint.model(), conjoint.boundary());
-  for (int round = 0; round < rounds && !offences.empty() && !context.should_stop(); ++round) {
+  for (int round = 0; round < kRounds && !offences.empty() && !context.should_stop(); ++round) {
     bool progress = false;
     for (const Offence& offence : offences) progress = cure(conjoint, offence) || progress;
     if (!progress) break;

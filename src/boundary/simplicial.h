@@ -32,7 +32,7 @@ std::vector<Offence> find_offences(const Model& model, const BoundaryMesh& mesh)
 std::string describe(const Offence& offence, const Model& model);
 
 /// Inserts points at offending interior edges and triangles, else splits their segments, until there is no offence or
-/// no progress within `rounds`. Returns what is left.
-std::vector<Offence> make_simplicial(Conjoint& conjoint, int rounds, const Context& context);
+/// no progress within ten rounds. Returns what is left.
+std::vector<Offence> make_simplicial(Conjoint& conjoint, const Context& context);
 
 }  // namespace curvetet

@@ -19,7 +19,7 @@ bool positive(double x) { return std::isfinite(x) && x > 0; }
 constexpr double kSmallestShare = 1e-5;
 constexpr double kDefaultShare = 0.1;
 constexpr double kFloorShare = 1.0 / 256;
-constexpr double kSplineFloorShare = 1.0 / 50;
+constexpr double kFreeFormFloorShare = 1.0 / 50;
 
 template <class Key, class Entities, class NameOf>
 bool assign_local(const LocalSize& local, double size, const Entities& entities, std::map<std::uint32_t, double>& into,
@@ -101,7 +101,7 @@ Result<Settings> resolve(const Options& options, const Model& model) {
   s.size = std::min(s.size, diagonal);
   s.sizing.size = s.size;
   s.sizing.min_size = options.min_size ? std::min(working(*options.min_size), s.size) : 1e-3 * s.size;
-  s.sizing.spline_floor = options.min_size ? s.sizing.min_size : kSplineFloorShare * s.size;
+  s.sizing.free_form_floor = options.min_size ? s.sizing.min_size : kFreeFormFloorShare * s.size;
   s.sizing.curvature = options.curvature;
   s.sizing.chord_height = options.chord_height ? working(*options.chord_height) : 0;
   s.sizing.grading = options.grading;
@@ -124,6 +124,7 @@ std::string options_json(const Options& o, const Settings& s, const Model& model
   j["size"] = out(s.sizing.size);
   j["size_is_default"] = !o.size.has_value();
   j["min_size"] = out(s.sizing.min_size);
+  j["free_form_floor"] = out(s.sizing.free_form_floor);
   j["curvature"] = o.curvature;
   j["chord_height"] = o.chord_height ? nlohmann::ordered_json(*o.chord_height) : nlohmann::ordered_json();
   j["grading"] = o.grading;

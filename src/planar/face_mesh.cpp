@@ -278,7 +278,9 @@ void FaceMesh::index_boundary() {
   for (const FaceTriangle& f : triangles_) {
     for (int i = 0; f.alive() && i < 3; ++i) {
       const NodeId a = f.node[next(i)], b = f.node[previous(i)];
-      if (!f.neighbour[i].valid()) boundary_.add({a.value(), b.value()}, point(a), point(b));
+      if (f.neighbour[i].valid()) continue;
+      boundary_.add({a.value(), b.value()}, point(a), point(b));
+      has_pole_ = has_pole_ || nodes_[a].vertex == nodes_[b].vertex;
     }
   }
 }

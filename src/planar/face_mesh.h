@@ -134,8 +134,8 @@ class FaceMesh {
   /// Flips one unconstrained edge if the result turns left (exactly).
   bool flip(FaceEdge edge);
   /// Lawson's flips from the given triangles until none is wanted; at most 64 and 32 per edge given, for a criterion
-  /// need not be transitive. `changed` becomes the triangles touched. An edge to a pole that is there twice in the
-  /// chart, on both sides of a triangle over the pole, is flipped as the one edge that it is in space.
+  /// need not be transitive. `changed` becomes the triangles touched. An edge to a pole that is there more
+  /// than once in the chart, with triangles over the pole between, is flipped as the one edge that it is in space.
   void restore(std::span<const TriangleId> from, const FlipWanted& wanted, std::vector<TriangleId>& changed);
 
   /// Removes a node without constrained edges and fills its star without flips, then restores the criterion if one is
@@ -207,8 +207,20 @@ class FaceMesh {
   void flip_star(NodeId n, std::vector<TriangleId>& fan, const FlipWanted& wanted);
   bool can_flip(FaceEdge e) const;
   std::array<TriangleId, 2> flip_edge(FaceEdge e);
+
+  // poles.cpp
+  /// Triangles over a pole with one apex, and the nodes of the pole that they use, from right to left.
+  struct PoleRun {
+    std::vector<TriangleId> cavity;
+    std::vector<NodeId> images;
+  };
   std::optional<int> pole_apex(TriangleId t) const;
-  std::vector<TriangleId> flip_at_pole(TriangleId t, const FlipWanted& wanted);
+  FaceEdge pass_over_pole(TriangleId t, bool left, PoleRun& run) const;
+  bool fill_to_pole(std::span<const NodeId> ring, const std::vector<NodeId>& images,
+                    std::vector<std::array<NodeId, 3>>& fill) const;
+  std::vector<TriangleId> leave_ring(TriangleId over, const FlipWanted& wanted);
+  std::vector<TriangleId> join_ring(FaceEdge below_pole, const FlipWanted& wanted);
+  std::vector<TriangleId> flip_at_pole(FaceEdge edge, const FlipWanted& wanted);
 
   // cavity.cpp
   void recover_edge(NodeId a, NodeId b, std::vector<TriangleId>& made);
@@ -230,6 +242,7 @@ class FaceMesh {
   NodeIndex index_;
   SegmentGrid boundary_;         // the edges of one triangle, by their nodes as that triangle sees them
   std::vector<NodeId> pinched_;  // nodes where the domain touches itself: more than one fan; sorted
+  bool has_pole_ = false;        // a boundary edge with one vertex at both ends
   std::size_t constrained_ = 0;  // sides of triangles on constrained edges
   std::vector<TriangleId> scratch_;
 };

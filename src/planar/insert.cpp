@@ -159,41 +159,6 @@ bool FaceMesh::flip(FaceEdge edge) {
   return true;
 }
 
-// The local index of the third node of a triangle with two nodes of one vertex.
-std::optional<int> FaceMesh::pole_apex(TriangleId t) const {
-  const FaceTriangle& f = triangles_[t];
-  for (int k = 0; k < 3; ++k)
-    if (nodes_[f.node[next(k)]].vertex == nodes_[f.node[previous(k)]].vertex) return k;
-  return std::nullopt;
-}
-
-// The triangle has no area in space, so its apex c may be any node; its two edges to the pole are one edge there. That
-// edge is flipped in two steps: the first makes a neighbour's apex the triangle's own, the second is the flip.
-std::vector<TriangleId> FaceMesh::flip_at_pole(TriangleId t, const FlipWanted& wanted) {
-  const auto apex = pole_apex(t);
-  if (!apex) return {};
-  const FaceTriangle f = triangles_[t];
-  const FaceEdge to_b{t, next(*apex)}, to_a{t, previous(*apex)};
-  for (const FaceEdge e : {to_a, to_b})
-    if (f.use[e.local] != -1 || !f.neighbour[e.local].valid() || pole_apex(f.neighbour[e.local])) return {};
-  const FaceEdge beyond_b = mirror(to_b), beyond_a = mirror(to_a);
-  const NodeId b = f.node[previous(*apex)];
-  const NodeId s = triangles_[beyond_b.triangle].node[beyond_b.local],
-               u = triangles_[beyond_a.triangle].node[beyond_a.local];
-  if (!wanted(f.node[*apex], b, s, u)) return {};
-  for (const FaceEdge first : {to_a, to_b}) {
-    if (!can_flip(first)) continue;
-    const auto [x, y] = flip_edge(first);
-    const FaceEdge second = first.local == to_a.local ? FaceEdge{x, 2} : FaceEdge{y, 1};
-    if (can_flip(second)) {
-      const auto [v, w] = flip_edge(second);
-      return {x, y, v, w};
-    }
-    flip_edge({x, 1});
-  }
-  return {};
-}
-
 // A criterion that is not transitive could flip for ever: the number of flips is bounded by a multiple of the edges.
 void FaceMesh::restore(std::span<const TriangleId> from, const FlipWanted& wanted, std::vector<TriangleId>& changed) {
   struct Waiting {
@@ -215,10 +180,13 @@ void FaceMesh::restore(std::span<const TriangleId> from, const FlipWanted& wante
     stack.pop_back();
     const FaceTriangle& f = triangles_[w.edge.triangle];
     // An edge that moved to another triangle was pushed again by the flip that moved it.
-    if (f.node[next(w.edge.local)] != w.a || f.node[previous(w.edge.local)] != w.b || !can_flip(w.edge)) continue;
-    const FaceEdge m = mirror(w.edge);
-    if (!wanted(w.a, w.b, f.node[w.edge.local], triangles_[m.triangle].node[m.local])) {
-      for (const TriangleId t : flip_at_pole(w.edge.triangle, wanted)) {
+    if (!f.alive() || f.node[next(w.edge.local)] != w.a || f.node[previous(w.edge.local)] != w.b) continue;
+    const auto asked = [&](FaceEdge m) {
+      return wanted(w.a, w.b, f.node[w.edge.local], triangles_[m.triangle].node[m.local]);
+    };
+    if (!can_flip(w.edge) || !asked(mirror(w.edge))) {
+      if (!has_pole_) continue;
+      for (const TriangleId t : flip_at_pole(w.edge, wanted)) {
         touched.push_back(t);
         for (int i = 0; i < 3; ++i) push({t, i});
         --budget;

@@ -151,7 +151,7 @@ class ForcedAngles {
       if (angles[e] >= kSmall) continue;
       keep_smaller(forced, narrow_face(edge(tet, e), edge(tet, 5 - e)));
     }
-    for (std::size_t i = 0; i < 4; ++i) keep_smaller(forced, needle(facet(tet, i)));
+    for (std::size_t i = 0; i < 4; ++i) keep_smaller(forced, needle(facet(tet, i), mesh_.tets[tet][i]));
     if (!forced) return;
     const double smallest = *std::min_element(angles.begin(), angles.end());
     ++summary_.forced_below_five;
@@ -275,12 +275,11 @@ class ForcedAngles {
   /// The largest angle under which an edge can be seen from the line of another as near as this, degrees.
   double seen_under(const Pair& from, const Pair& across) const {
     const double reach = std::min(to_line(across[0], from), to_line(across[1], from));
-    return degrees(std::atan2(distance(at(across[0]), at(across[1])), reach));
+    return degrees(2 * std::asin(std::min(1.0, 0.5 * distance(at(across[0]), at(across[1])) / reach)));
   }
 
-  /// A triangle over a narrow face, from a segment of one curve to a vertex on another: its sharpest angle bounds the
-  /// angle of any tet over it, at the edge from that corner to the apex.
-  std::optional<ForcedAngle> needle(const Triple& facet) const {
+  /// A triangle over a narrow face, from a segment of one curve to a vertex on another, and a tet over it.
+  std::optional<ForcedAngle> needle(const Triple& facet, Index apex) const {
     const Index face = facets_.at(facet);
     if (face == kOutside) return std::nullopt;
     for (std::size_t i = 0; i < 3; ++i) {
@@ -289,14 +288,20 @@ class ForcedAngles {
       const NodeOnCad& node = mesh_.nodes[r];
       if (segment == segments_.end() || node.dimension > 1) continue;
       if (node.dimension == 1 && node.entity == segment->second) continue;
-      const double angle = std::min(corner_angle(p, q, r), corner_angle(q, r, p));
+      const double angle = std::min(bound_at(p, q, r, apex), bound_at(q, r, p, apex));
       if (angle >= kSmall) continue;
       std::vector<Index> edges{segment->second};
       if (node.dimension == 1) edges.push_back(node.entity);
-      std::sort(edges.begin(), edges.end());
-      return narrow(face, edges, angle, at(r));
+      return narrow(face, std::move(edges), angle, at(r));
     }
     return std::nullopt;
+  }
+
+  /// The angle of a tet at its edge from v to the apex is no larger than this, by the sine rule of the spherical
+  /// triangle that it cuts out around v; degrees.
+  double bound_at(Index v, Index a, Index b, Index apex) const {
+    const auto sine = [&](Index x, Index y) { return std::sin(corner_angle(v, x, y) * std::numbers::pi / 180); };
+    return degrees(std::asin(std::min(1.0, sine(a, b) / std::max(sine(apex, a), sine(apex, b)))));
   }
 
   /// At v between the directions to a and b, degrees.
@@ -313,11 +318,11 @@ class ForcedAngles {
     std::vector<Index> edges;
     for (Index v : ends)
       if (mesh_.nodes[v].dimension == 1) edges.push_back(mesh_.nodes[v].entity);
-    std::sort(edges.begin(), edges.end());
     return edges;
   }
 
   static ForcedAngle narrow(Index face, std::vector<Index> edges, double angle, Vec3 place) {
+    std::sort(edges.begin(), edges.end());
     return {{face}, std::move(edges), std::nullopt, angle, {place.x, place.y, place.z}, 0};
   }
 

@@ -145,8 +145,10 @@ double FaceBending::turning_size(Vec2 uv, const SurfaceBending& at, double angle
 Demand FaceBending::demand(Vec2 uv, const SurfaceBending& at) const {
   Demand result;
   if (!(at.largest > 0) || norm2(at.normal) == 0) return result;
-  if (options_.curvature > 0) result.size = turning_size(uv, at, 2 * std::numbers::pi / options_.curvature);
-  if (!analytic_) result.size = std::max(result.size, options_.spline_floor);
+  if (options_.curvature > 0) {
+    result.size = turning_size(uv, at, 2 * std::numbers::pi / options_.curvature);
+    if (!analytic_) result.size = std::max(result.size, options_.free_form_floor);
+  }
   if (options_.chord_height > 0) {
     const double size = chord_for_height(kFaceHeightFactor * options_.chord_height, effective_curvature(at));
     result = smaller(result, {size, SizeReason::chord_height});
@@ -177,7 +179,7 @@ Demand curve_demand(const ModelEdge& edge, const Curve& curve, double t, const S
       if (fraction >= kLeastFraction && turned >= kConfirmed * fraction * std::min(angle, 1.0)) break;
       result.size *= 2;
     }
-    if (!analytic) result.size = std::max(result.size, options.spline_floor);
+    if (!analytic) result.size = std::max(result.size, options.free_form_floor);
   }
   if (options.chord_height > 0)
     result = smaller(result, {chord_for_height(options.chord_height, curvature), SizeReason::chord_height});

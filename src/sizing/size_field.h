@@ -20,13 +20,13 @@
 namespace curvetet {
 
 struct SizingOptions {
-  double size = 0;                            ///< largest edge length wanted; > 0
-  double min_size = 0;                        ///< floor of curvature- and gap-driven sizes
-  double curvature = 12;                      ///< elements per full turn; 0: off
-  double spline_floor = 0;                    ///< floor of what curvature asks for where the geometry is a spline
-  double chord_height = 0;                    ///< largest distance of a chord to its arc; 0: off
-  double grading = 0.5;                       ///< growth of size over distance
-  bool gaps = true;                           ///< chord height at most a quarter of the local gap
+  double size = 0;             ///< largest edge length wanted; > 0
+  double min_size = 0;         ///< floor of curvature- and gap-driven sizes
+  double curvature = 12;       ///< elements per full turn; 0: off
+  double free_form_floor = 0;  ///< floor of what the curvature of others than analytic surfaces and conics asks for
+  double chord_height = 0;     ///< largest distance of a chord to its arc; 0: off
+  double grading = 0.5;        ///< growth of size over distance
+  bool gaps = true;            ///< chord height at most a quarter of the local gap
   std::map<std::uint32_t, double> face_size;  ///< by index of FaceId
   std::map<std::uint32_t, double> edge_size;
   std::map<std::uint32_t, double> solid_size;

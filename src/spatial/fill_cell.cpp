@@ -11,6 +11,7 @@
 #include <map>
 
 #include "predicates/predicates.h"
+#include "spatial/flips_exchange.h"
 #include "spatial/triangles_cross.h"
 
 namespace curvetet {
@@ -98,7 +99,7 @@ class Cell {
     return {};
   }
 
-  /// All sides, first those that were dead ends of the searches most often.
+  /// All sides, first those that were dead ends of the last search most often.
   std::vector<CellSide> stuck() const {
     std::vector<CellSide> order = sides_;
     const auto count = [&](const CellSide& s) {
@@ -152,11 +153,8 @@ class Cell {
   Vec3 at(VertexId v) const { return store_.position(v); }
   int side_of(const CellSide& t, VertexId v) const { return orient3d(at(t[0]), at(t[1]), at(t[2]), at(v)); }
 
-  /// Volume over cubed length.
   double quality(const CellSide& t, VertexId v) const {
-    const Vec3 a = at(t[1]) - at(t[0]), b = at(t[2]) - at(t[0]), c = at(v) - at(t[0]);
-    const double longest = std::max({norm2(a), norm2(b), norm2(c), norm2(b - a), norm2(c - a), norm2(c - b)});
-    return std::abs(dot(cross(a, b), c)) / (longest * std::sqrt(longest));
+    return flips::volume_over_length(at(t[0]), at(t[1]), at(t[2]), at(v));
   }
 
   /// Not positive if one of the tets is not.
@@ -259,9 +257,17 @@ class Cell {
   const VertexStore& store_;
   const std::vector<CellSide>& sides_;
   std::vector<VertexId> corners_;
-  std::map<CellSide, int> dead_ends_;
-  std::vector<CellSide> served_;
+  std::map<CellSide, int> dead_ends_;  ///< of the last search
+  std::vector<CellSide> served_;       ///< sides with a new point before them
 };
+
+/// How many of the points the tets have.
+std::size_t used(const std::vector<VertexId>& points, const Tets& tets) {
+  return static_cast<std::size_t>(std::count_if(points.begin(), points.end(), [&](VertexId v) {
+    return std::any_of(tets.begin(), tets.end(),
+                       [v](const auto& t) { return std::find(t.begin(), t.end(), v) != t.end(); });
+  }));
+}
 
 }  // namespace
 
@@ -274,7 +280,7 @@ CellFill fill_cell(const VertexStore& vertices, const std::vector<CellSide>& sid
   std::vector<VertexId> points{add_vertex(cell.middle())};
   if (auto tets = cell.star(points.front())) return {std::move(*tets), 1, {}};
   while (true) {
-    if (auto tets = cell.search(points)) return {std::move(*tets), points.size(), {}};
+    if (auto tets = cell.search(points)) return {*tets, used(points, *tets), {}};
     const VertexId more = points.size() < kMostPoints ? cell.point_before_stuck(add_vertex) : VertexId();
     if (!more.valid()) return {{}, 0, cell.stuck()};
     points.push_back(more);

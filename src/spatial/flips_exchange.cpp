@@ -6,6 +6,7 @@
 #include "spatial/flips_exchange.h"
 
 #include <algorithm>
+#include <cmath>
 
 namespace curvetet::flips {
 
@@ -34,21 +35,39 @@ struct Open {
   bool locked = false;
 };
 
-bool has(const Inline<TetId, kMaxTets>& tets, TetId t) { return std::find(tets.begin(), tets.end(), t) != tets.end(); }
+bool has(std::span<const TetId> tets, TetId t) { return std::find(tets.begin(), tets.end(), t) != tets.end(); }
 
-using OpenFacets = Inline<Open, 4 * kMaxTets>;
+using FewOpen = Inline<Open, 4 * kMaxTets>;
+struct ManyOpen : std::vector<Open> {
+  void take(std::size_t i) {
+    (*this)[i] = back();
+    pop_back();
+  }
+};
 
-void collect_boundary(const TetComplex& complex, const Exchange& exchange, OpenFacets& open) {
-  for (TetId t : exchange.old_tets) {
+template <class OpenFacets>
+void collect_boundary(const TetComplex& complex, std::span<const TetId> old_tets, OpenFacets& open) {
+  for (TetId t : old_tets) {
     for (int i = 0; i < 4; ++i) {
-      if (has(exchange.old_tets, complex.neighbour(t, i))) continue;
+      if (has(old_tets, complex.neighbour(t, i))) continue;
       const TetFacet f{t, i};
       open.push_back({key_of(complex.vertices(t), i), complex.mirror(f), complex.is_locked(f)});
     }
   }
 }
 
-void glue_or_open(TetComplex& complex, TetFacet f, OpenFacets& open) {
+/// Of locked facets between two of the tets.
+std::vector<Key> inner_locks(const TetComplex& complex, std::span<const TetId> tets) {
+  std::vector<Key> keys;
+  for (TetId t : tets)
+    for (int i = 0; i < 4; ++i)
+      if (complex.is_locked({t, i}) && has(tets, complex.neighbour(t, i)))
+        keys.push_back(key_of(complex.vertices(t), i));
+  return keys;
+}
+
+template <class OpenFacets>
+void glue_or_open(TetComplex& complex, TetFacet f, OpenFacets& open, std::span<const Key> inner_locks) {
   const Key key = key_of(complex.vertices(f.tet), f.local);
   for (std::size_t k = 0; k < open.size(); ++k) {
     if (open[k].key != key) continue;
@@ -57,7 +76,26 @@ void glue_or_open(TetComplex& complex, TetFacet f, OpenFacets& open) {
     open.take(k);
     return;
   }
-  open.push_back({key, f, false});
+  const bool locked = std::find(inner_locks.begin(), inner_locks.end(), key) != inner_locks.end();
+  if (locked) complex.set_lock_bit(f, true);
+  open.push_back({key, f, locked});
+}
+
+template <class OpenFacets>
+void exchange_tets(Tetrahedralization& mesh, std::span<const TetId> old_tets,
+                   std::span<const TetComplex::Vertices> new_tets, std::span<const Key> inner_locks) {
+  TetComplex& complex = mesh.complex();
+  OpenFacets open;
+  collect_boundary(complex, old_tets, open);
+  const std::uint32_t region = complex.region(old_tets[0]);
+  for (TetId t : old_tets) complex.remove(t);
+  for (const TetComplex::Vertices& v : new_tets) {
+    const TetId t = complex.add(v);
+    complex.set_region(t, region);
+    for (int i = 0; i < 4; ++i) glue_or_open(complex, {t, i}, open, inner_locks);
+    mesh.touch(t);
+  }
+  CURVETET_CHECK(open.empty());
 }
 
 std::optional<TetId> find_tet(const Tetrahedralization& mesh, const TetComplex::Vertices& v) {
@@ -82,19 +120,19 @@ bool is_free(const TetComplex& complex, const Exchange& exchange) {
   return true;
 }
 
+double volume_over_length(Vec3 a, Vec3 b, Vec3 c, Vec3 d) {
+  const Vec3 u = b - a, v = c - a, w = d - a;
+  const double longest = std::max({norm2(u), norm2(v), norm2(w), norm2(c - b), norm2(d - b), norm2(d - c)});
+  return dot(cross(u, v), w) / (longest * std::sqrt(longest));
+}
+
 void commit(Tetrahedralization& mesh, const Exchange& exchange) {
-  TetComplex& complex = mesh.complex();
-  OpenFacets open;
-  collect_boundary(complex, exchange, open);
-  const std::uint32_t region = complex.region(exchange.old_tets[0]);
-  for (TetId t : exchange.old_tets) complex.remove(t);
-  for (const TetComplex::Vertices& v : exchange.new_tets) {
-    const TetId t = complex.add(v);
-    complex.set_region(t, region);
-    for (int i = 0; i < 4; ++i) glue_or_open(complex, {t, i}, open);
-    mesh.touch(t);
-  }
-  CURVETET_CHECK(open.empty());
+  exchange_tets<FewOpen>(mesh, exchange.old_tets, exchange.new_tets, {});
+}
+
+void commit_many(Tetrahedralization& mesh, std::span<const TetId> old_tets,
+                 std::span<const TetComplex::Vertices> new_tets) {
+  exchange_tets<ManyOpen>(mesh, old_tets, new_tets, inner_locks(mesh.complex(), old_tets));
 }
 
 std::optional<Ring> ring_of(const TetComplex& complex, TetEdge edge, std::size_t limit) {

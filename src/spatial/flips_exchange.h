@@ -4,6 +4,7 @@
 #include <array>
 #include <cstddef>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "spatial/tetrahedralization.h"
@@ -26,6 +27,7 @@ class Inline {
   bool full() const { return size_ == N; }
   T& operator[](std::size_t i) { return data_[i]; }
   const T& operator[](std::size_t i) const { return data_[i]; }
+  const T* data() const { return data_.data(); }
   const T* begin() const { return data_.data(); }
   const T* end() const { return data_.data() + size_; }
 
@@ -47,8 +49,15 @@ struct Exchange {
 /// True if the old tets are finite, of one region, and no facet between two of them is locked.
 bool is_free(const TetComplex& complex, const Exchange& exchange);
 
+/// Volume over the cube of the longest edge, times six.
+double volume_over_length(Vec3 a, Vec3 b, Vec3 c, Vec3 d);
+
 /// Exchanges the tets. Locks on the polyhedron's boundary and the region stay. Before: is_free.
 void commit(Tetrahedralization& mesh, const Exchange& exchange);
+/// As commit, for any number of tets. Locked facets between two old tets must be facets of the new ones, and stay
+/// locked.
+void commit_many(Tetrahedralization& mesh, std::span<const TetId> old_tets,
+                 std::span<const TetComplex::Vertices> new_tets);
 
 /// The polyhedron around an edge: tet i has the vertices (p, q, ring[i], ring[i+1]) and is positive.
 struct Ring {

@@ -26,12 +26,6 @@ using flips::Ring;
 /// Rings looked at for one obstacle: bounds the recursion. Deep searches on rings of usual length need a few hundred.
 constexpr int kRingBudget = 600;
 
-double volume_over_length(Vec3 a, Vec3 b, Vec3 c, Vec3 d) {
-  const Vec3 u = b - a, v = c - a, w = d - a;
-  const double longest = std::max({norm2(u), norm2(v), norm2(w), norm2(c - b), norm2(d - b), norm2(d - c)});
-  return dot(cross(u, v), w) / (longest * std::sqrt(longest));
-}
-
 /// True if v lies on the open segment ab.
 bool on_segment(Vec3 v, Vec3 a, Vec3 b) { return collinear(a, b, v) && dot(v - a, b - a) > 0 && dot(v - b, a - b) > 0; }
 
@@ -50,7 +44,7 @@ struct SegmentObstruction {
            SegmentTriangle::crosses;
   }
   double floor() const { return -1; }
-  double tet(Vec3 p, Vec3 q, Vec3 r, Vec3 s) const { return volume_over_length(p, q, r, s); }
+  double tet(Vec3 p, Vec3 q, Vec3 r, Vec3 s) const { return flips::volume_over_length(p, q, r, s); }
 };
 
 /// Cost of what crosses a wanted triangle.
@@ -65,7 +59,7 @@ struct TriangleObstruction {
   }
   int facet(VertexId, VertexId, VertexId) const { return 0; }
   double floor() const { return -1; }
-  double tet(Vec3 p, Vec3 q, Vec3 r, Vec3 s) const { return volume_over_length(p, q, r, s); }
+  double tet(Vec3 p, Vec3 q, Vec3 r, Vec3 s) const { return flips::volume_over_length(p, q, r, s); }
 };
 
 /// Facets and edges in the way, by their vertices; `hopeless` if a vertex is in the way.

@@ -16,6 +16,7 @@
 
 #include "predicates/predicates.h"
 #include "spatial/fill_cell.h"
+#include "spatial/flips_exchange.h"
 
 namespace curvetet {
 
@@ -120,7 +121,7 @@ class Refill {
                          std::any_of(stuck.begin(), stuck.end(), [&](const CellSide& side) { return grow(side); });
       if (!grown) return {};
     }
-    commit();
+    flips::commit_many(mesh_, region_, new_tets_);
     result.done = true;
     return result;
   }
@@ -138,7 +139,7 @@ class Refill {
   bool grow(const CellSide& side) {
     const auto found = outside_.find(sorted(side));
     if (found == outside_.end() || found->second.locked) return false;
-    const TetId t = found->second.facet.tet;
+    const TetId t = found->second.tet;
     if (complex_.is_ghost(t)) return false;
     region_.insert(std::lower_bound(region_.begin(), region_.end(), t), t);
     return true;
@@ -147,7 +148,6 @@ class Refill {
   void collect_sheets() {
     sides_.clear();
     outside_.clear();
-    locked_.clear();
     cells_.clear();
     std::set<Triple> inner;
     for (const Triple& w : triangles_) inner.insert(sorted(w));
@@ -156,13 +156,10 @@ class Refill {
         const TetFacet f{t, i};
         const Triple v = complex_.facet_vertices(f);
         if (in_region(complex_.neighbour(t, i))) {
-          if (complex_.is_locked(f)) {
-            inner.insert(sorted(v));
-            locked_[sorted(v)] = complex_.locked_face(f);
-          }
+          if (complex_.is_locked(f)) inner.insert(sorted(v));
           continue;
         }
-        outside_[sorted(v)] = {complex_.mirror(f), complex_.is_locked(f)};
+        outside_[sorted(v)] = {complex_.neighbour(t, i), complex_.is_locked(f)};
         sides_.push_back(v);
       }
     }
@@ -292,41 +289,8 @@ class Refill {
     return {};
   }
 
-  void commit() {
-    const std::uint32_t region = complex_.region(region_.front());
-    for (TetId t : region_) complex_.remove(t);
-    std::map<Triple, TetFacet> open;
-    for (const TetComplex::Vertices& v : new_tets_) {
-      const TetId t = complex_.add(v);
-      complex_.set_region(t, region);
-      for (int i = 0; i < 4; ++i) glue({t, i}, open);
-      mesh_.touch(t);
-    }
-    CURVETET_CHECK(open.empty() && outside_.empty());
-    for (const auto& [vertices, face] : locked_) {
-      const auto f = mesh_.find_facet(vertices[0], vertices[1], vertices[2]);
-      CURVETET_CHECK(f.has_value());
-      complex_.set_lock_bit(*f, true);
-      complex_.set_lock_bit(complex_.mirror(*f), true);
-    }
-  }
-
-  void glue(TetFacet f, std::map<Triple, TetFacet>& open) {
-    const Triple key = sorted(complex_.facet_vertices(f));
-    if (const auto outside = outside_.find(key); outside != outside_.end()) {
-      complex_.glue(f, outside->second.facet);
-      if (outside->second.locked) complex_.set_lock_bit(f, true);
-      outside_.erase(outside);
-    } else if (const auto other = open.find(key); other != open.end()) {
-      complex_.glue(f, other->second);
-      open.erase(other);
-    } else {
-      open.emplace(key, f);
-    }
-  }
-
   struct Outside {
-    TetFacet facet;
+    TetId tet;
     bool locked = false;
   };
 
@@ -336,8 +300,7 @@ class Refill {
   const RefillOptions& options_;
   std::vector<TetId> region_;
   std::vector<CellSide> sides_;
-  std::map<Triple, Outside> outside_;  ///< what the region's boundary is glued to
-  std::map<Triple, FaceId> locked_;    ///< within the region
+  std::map<Triple, Outside> outside_;  ///< beyond the region's boundary
   std::vector<std::uint32_t> parent_;  ///< of sides, towards the root of their cell
   std::vector<std::vector<std::uint32_t>> cells_;
   std::vector<TetComplex::Vertices> new_tets_;

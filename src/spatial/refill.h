@@ -1,5 +1,5 @@
 // Wanted triangles become facets: the tets that they cross are taken out, and the cells into which the triangles cut
-// the room that is left are filled anew, each with the star of one point.
+// the room that is left are filled anew.
 #pragma once
 
 #include <array>
@@ -13,7 +13,7 @@ namespace curvetet {
 
 struct RefillOptions {
   std::size_t most_tets = 300;  ///< that may be taken out
-  /// Makes a vertex at a point of the grid, where no vertex of a cell sees all of the cell. Empty: no new points.
+  /// Makes a vertex near a point, on the grid. Empty: no new points.
   std::function<VertexId(Vec3)> add_vertex;
 };
 
@@ -25,8 +25,9 @@ struct RefillResult {
 /// Before: the triangles have different vertices, all in the mesh, and do not cross each other; edges of only one of
 /// them exist. After (done): every triangle is a facet; locked facets and kept segments are what they were; all tets
 /// are positive, exactly. Not done (nothing but the vertex store has changed): a vertex lies on a triangle, a lock or a
-/// kept segment is crossed, a vertex would be lost, too many tets are crossed, or a cell is not star-shaped.
-/// One pass, O(n log n) in the tets that are crossed times the triangles.
+/// kept segment is crossed, a vertex would be lost, too many tets are crossed, or a cell is not filled (fill_cell.h)
+/// even after a few tets beyond its stuck sides were taken in. O(n log n) in the tets taken out times the triangles,
+/// but for the search of the cells.
 RefillResult refill(Tetrahedralization& mesh, std::span<const std::array<VertexId, 3>> triangles,
                     const RefillOptions& options);
 

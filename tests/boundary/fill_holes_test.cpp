@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include "boundary/reconnect.h"
 #include "boundary/surface_triangles.h"
 #include "spatial/flips.h"
 #include "support/bodies.h"
@@ -10,13 +11,6 @@
 
 namespace curvetet::test {
 namespace {
-
-std::size_t missing_facets(const BoundaryRun& run, FaceId face) {
-  std::size_t missing = 0;
-  for (const SurfaceTriangle& t : surface_triangles(run.boundary.faces[face], face))
-    missing += run.tets->find_facet(t.vertices[0], t.vertices[1], t.vertices[2]) ? 0U : 1U;
-  return missing;
-}
 
 struct Counts {
   std::size_t facets = 0, left = 0;
@@ -33,9 +27,10 @@ Counts fill_all(const Model& model, double size) {
   Counts counts;
   for (std::size_t f = 0; f < model.faces.size(); ++f) {
     const FaceId face(f);
-    counts.facets += missing_facets(*run, face);
-    for (int pass = 0; pass < 3 && missing_facets(*run, face) > 0; ++pass) fill_holes(*run->conjoint, face, true);
-    counts.left += missing_facets(*run, face);
+    counts.facets += missing_triangles(*run->conjoint, face).size();
+    for (int pass = 0; pass < 3 && !missing_triangles(*run->conjoint, face).empty(); ++pass)
+      fill_holes(*run->conjoint, face, true);
+    counts.left += missing_triangles(*run->conjoint, face).size();
     for (const SurfaceTriangle& t : surface_triangles(run->boundary.faces[face], face))
       if (const auto facet = run->tets->find_facet(t.vertices[0], t.vertices[1], t.vertices[2]))
         run->tets->lock(*facet, face);
@@ -71,7 +66,7 @@ TEST(FillHoles, BringsBackSegmentsThatFlipsTookOut) {
     if (!edge || !remove_edge(tets, *edge, any, 0)) continue;
     ++taken;
     ASSERT_FALSE(tets.find_edge(s.a, s.b));
-    const FillResult filled = fill_around_segment(*run->conjoint, s, true);
+    const FillResult filled = fill_around_segment(*run->conjoint, s);
     EXPECT_GT(filled.recovered, 0U);
     EXPECT_TRUE(tets.find_edge(s.a, s.b));
   }

@@ -396,37 +396,83 @@ TEST(Determinism, SameOperationsSameMesh) {
   EXPECT_EQ(run(), run());
 }
 
-/// A chart whose lower border is one point in space, vertex 0. Node 10 is the apex of the triangle over it.
-FaceInput chart_with_pole() {
-  ChainInput pole{0, {VertexId(0U), VertexId(0U)}, {{-0.5, -0.5}, {0.5, -0.5}}, false};
+/// A chart whose lower border is one point in space, vertex 0, in so many pieces; further nodes by vertex and place.
+FaceInput chart_with_pole(int pieces, const std::vector<std::pair<std::uint32_t, Vec2>>& nodes) {
+  ChainInput pole{0, {}, {}, false};
+  for (int k = 0; k <= pieces; ++k) {
+    pole.vertices.emplace_back(0U);
+    pole.q.push_back(on_grid(Vec2{-0.5 + static_cast<double>(k) / pieces, -0.5}));
+  }
   ChainInput rest{1, {VertexId(0U), VertexId(1U), VertexId(2U), VertexId(0U)}, {}, false};
   rest.q = {{0.5, -0.5}, {0.5, 0.5}, {-0.5, 0.5}, {-0.5, -0.5}};
   FaceInput input;
   input.loops.push_back({{pole, rest}, false});
-  for (const auto& [v, q] : std::vector<std::pair<std::uint32_t, Vec2>>{
-           {10, {0, -0.046875}}, {11, {-0.3125, -0.109375}}, {12, {0.3125, -0.109375}}})
-    input.isolated.push_back({VertexId(v), q});
+  for (const auto& [v, q] : nodes) input.isolated.push_back({VertexId(v), q});
   return input;
 }
 
-TEST(PlanarEdit, AnEdgeToAPoleIsFlippedAsTheOneEdgeItIsInSpace) {
-  FaceMesh mesh = built(chart_with_pole());
-  const auto node = [&](std::uint32_t v) { return mesh.nodes_of(VertexId(v)).front(); };
-  const auto poles = mesh.nodes_of(VertexId(0U));
-  ASSERT_EQ(poles.size(), 2U);
-  ASSERT_TRUE(mesh.find_edge(node(10), poles[0]) && mesh.find_edge(node(10), poles[1]));
-  const auto is_pole = [&](NodeId n) { return mesh.node(n).vertex == VertexId(0U); };
-  const auto wanted = [&](NodeId a, NodeId b, NodeId c, NodeId d) {
-    const bool to_pole = (a == node(10) && is_pole(b)) || (b == node(10) && is_pole(a));
-    return to_pole && !is_pole(c) && !is_pole(d);
-  };
-  std::vector<TriangleId> all, changed;
-  for (std::size_t t = 0; t < mesh.triangle_slots(); ++t) all.push_back(TriangleId(t));
-  mesh.restore(all, wanted, changed);
-  expect_valid(mesh);
-  EXPECT_TRUE(mesh.find_edge(node(11), node(12)));
-  for (NodeId p : poles) EXPECT_FALSE(mesh.find_edge(node(10), p));
-  EXPECT_FALSE(changed.empty());
+struct PoleFlips {
+  FaceMesh mesh;
+  std::vector<TriangleId> changed;
+
+  NodeId node(std::uint32_t v) const { return mesh.nodes_of(VertexId(v)).front(); }
+  bool is_pole(NodeId n) const { return mesh.node(n).vertex == VertexId(0U); }
+  std::size_t edges_to_pole(NodeId n) const {
+    const auto poles = mesh.nodes_of(VertexId(0U));
+    return static_cast<std::size_t>(
+        std::count_if(poles.begin(), poles.end(), [&](NodeId p) { return mesh.find_edge(n, p).has_value(); }));
+  }
+  void restore(const FaceMesh::FlipWanted& wanted) {
+    std::vector<TriangleId> all;
+    for (std::size_t t = 0; t < mesh.triangle_slots(); ++t)
+      if (mesh.triangle(TriangleId(t)).alive()) all.push_back(TriangleId(t));
+    mesh.restore(all, wanted, changed);
+  }
+};
+
+class PlanarPole : public ::testing::TestWithParam<int> {};
+
+// However many edges of the chart it is: node 10 leaves the nodes around the pole and comes back.
+TEST_P(PlanarPole, AnEdgeToAPoleIsFlippedAsTheOneEdgeItIsInSpace) {
+  PoleFlips at{
+      built(chart_with_pole(GetParam(), {{10, {0, -0.046875}}, {11, {-0.3125, -0.109375}}, {12, {0.3125, -0.109375}}})),
+      {}};
+  const NodeId apex = at.node(10), right = at.node(11), left = at.node(12);
+  const std::size_t triangles = at.mesh.triangle_count();
+  ASSERT_GT(at.edges_to_pole(apex), 0u);
+  at.restore([&](NodeId a, NodeId b, NodeId c, NodeId d) {
+    const bool to_pole = (a == apex && at.is_pole(b)) || (b == apex && at.is_pole(a));
+    return to_pole && !at.is_pole(c) && !at.is_pole(d);
+  });
+  expect_valid(at.mesh);
+  EXPECT_TRUE(at.mesh.find_edge(right, left));
+  EXPECT_EQ(at.edges_to_pole(apex), 0u);
+  EXPECT_FALSE(at.changed.empty());
+  at.restore([&](NodeId a, NodeId b, NodeId c, NodeId d) {
+    const bool around = (a == right && b == left) || (a == left && b == right);
+    return around && (at.is_pole(c) || at.is_pole(d));
+  });
+  expect_valid(at.mesh);
+  EXPECT_FALSE(at.mesh.find_edge(right, left));
+  EXPECT_GT(at.edges_to_pole(apex), 0u);
+  EXPECT_EQ(at.mesh.triangle_count(), triangles);
+}
+
+INSTANTIATE_TEST_SUITE_P(Pieces, PlanarPole, ::testing::Values(1, 2, 3, 8));
+
+// A criterion that says yes or no at random ends, and leaves a valid mesh.
+TEST(PlanarEdit, FlipsAtAPoleKeepTheMeshValid) {
+  std::mt19937 random(3);
+  std::uniform_real_distribution<double> unit(-0.4375, 0.4375);
+  std::vector<std::pair<std::uint32_t, Vec2>> nodes;
+  for (std::uint32_t k = 0; k < 40; ++k) nodes.emplace_back(10 + k, on_grid(Vec2{unit(random), unit(random)}));
+  PoleFlips at{built(chart_with_pole(9, nodes)), {}};
+  const std::size_t triangles = at.mesh.triangle_count();
+  for (int round = 0; round < 20; ++round) {
+    at.restore([&](NodeId, NodeId, NodeId, NodeId) { return random() % 3 == 0; });
+    expect_valid(at.mesh);
+    EXPECT_EQ(at.mesh.triangle_count(), triangles);
+  }
 }
 
 }  // namespace

@@ -12,7 +12,7 @@
 #include "sizing/patch_model.h"
 #include "sizing/patch_tree.h"
 #include "support/bodies.h"
-#include "support/roof.h"
+#include "support/lip.h"
 #include "support/wriggle.h"
 
 namespace curvetet {
@@ -180,18 +180,19 @@ TEST(Bending, WithinTheToleranceOfAnEdgeItMeansNothing) {
   EXPECT_LT(sizing::curve_demand(edge, curve, t, options).size, 1e-3);
 }
 
-TEST(Bending, ALipOfASplineAsksForNothingBelowTheFloor) {
+TEST(Bending, ALipOfAFreeFormAsksForNothingBelowTheFloor) {
   Model model;
-  const FaceId face = test::add_piece(model, std::make_shared<test::Roof>(5, 1e-4), {-0.2, 0}, {0.2, 0.3});
+  const FaceId face = test::add_piece(model, std::make_shared<test::Lip>(2e-4, 4e-5), {-0.2, 0}, {0.2, 0.3});
   SizingOptions options;
   options.size = 0.1;
   options.curvature = 12;
   const auto demanded = [&] {
     const sizing::FaceBending bend(model, face, options);
-    return bend.demand({0, 0.1}, sizing::bending(bend.surface(), {0, 0.1})).size;
+    const Vec2 at{2.6e-5, 0.1};  // where it bends most
+    return bend.demand(at, sizing::bending(bend.surface(), at)).size;
   };
   EXPECT_LT(demanded(), 1e-3);
-  options.spline_floor = 2e-3;
+  options.free_form_floor = 2e-3;
   EXPECT_EQ(demanded(), 2e-3);
   const test::Wriggle curve(1e-4, 1e-3);
   ModelEdge edge;

@@ -1,6 +1,8 @@
 // Validity of a tetrahedralization, judged by the definition and slowly; and point sets for the tests of flips.
 #pragma once
 
+#include <gtest/gtest.h>
+
 #include <algorithm>
 #include <cmath>
 #include <map>
@@ -115,5 +117,15 @@ inline std::vector<VertexId> all_ids(const VertexStore& store) {
   for (std::size_t i = 0; i < store.size(); ++i) ids.push_back(VertexId(i));
   return ids;
 }
+
+/// Points and their Delaunay tetrahedralization.
+struct Cloud {
+  VertexStore store;
+  Tetrahedralization mesh;
+  explicit Cloud(VertexStore points) : store(std::move(points)), mesh(store, 7) {
+    Context context;
+    EXPECT_TRUE(mesh.build(all_ids(store), context).ok());
+  }
+};
 
 }  // namespace curvetet::test

@@ -9,15 +9,6 @@
 namespace curvetet::test {
 namespace {
 
-struct Cloud {
-  VertexStore store;
-  Tetrahedralization mesh;
-  explicit Cloud(VertexStore points) : store(std::move(points)), mesh(store, 7) {
-    Context context;
-    EXPECT_TRUE(mesh.build(all_ids(store), context).ok());
-  }
-};
-
 double shape(Vec3 a, Vec3 b, Vec3 c, Vec3 d) {
   const Vec3 u = b - a, v = c - a, w = d - a;
   const double sum = norm2(u) + norm2(v) + norm2(w) + norm2(c - b) + norm2(d - b) + norm2(d - c);

@@ -75,15 +75,6 @@ TEST(FillCell, ATwistTheOtherWayNeedsNone) {
   EXPECT_NEAR(sixfold_volume_of(store, filled.tets), sixfold_volume_within(store, sides), 1e-12);
 }
 
-struct Cloud {
-  VertexStore store;
-  Tetrahedralization mesh;
-  explicit Cloud(VertexStore points) : store(std::move(points)), mesh(store, 7) {
-    Context context;
-    EXPECT_TRUE(mesh.build(all_ids(store), context).ok());
-  }
-};
-
 /// Two triangles over a missing edge whose four outer edges exist.
 std::optional<std::array<Triple, 2>> missing_pair(const Tetrahedralization& mesh, const VertexStore& store,
                                                   std::mt19937_64& random) {
