@@ -36,6 +36,11 @@ Triple ordered(Triple t) {
 
 double degrees(double radians) { return radians * 180 / std::numbers::pi; }
 
+/// A boundary triangle over an edge: its face and its third vertex.
+struct Over {
+  Index face, third;
+};
+
 /// A tet at a segment: between the half planes to two vertices.
 struct Sector {
   Index tet, solid;
@@ -85,7 +90,7 @@ class ForcedAngles {
         wanted.insert(edge(s.tet, e));
         if (s.angles[e] >= kSmall) continue;
         const Pair across = edge(s.tet, 5 - e);
-        if (between_curves(across)) across_[across] = kOutside;
+        if (between_curves(across)) across_[across] = {};
       }
       for (std::size_t i = 0; i < 4; ++i) facets_[facet(s.tet, i)] = kOutside;
     }
@@ -115,7 +120,8 @@ class ForcedAngles {
       if (known != facets_.end()) known->second = mesh_.triangle_face[t];
       for (std::size_t i = 0; i < 3; ++i) {
         const Pair side = ordered(v[i], v[(i + 1) % 3]);
-        if (const auto over = across_.find(side); over != across_.end()) over->second = mesh_.triangle_face[t];
+        if (const auto over = across_.find(side); over != across_.end())
+          over->second.push_back({mesh_.triangle_face[t], v[(i + 2) % 3]});
         if (segments_.count(side)) walls_[{side[0], side[1], v[(i + 2) % 3]}] = mesh_.triangle_face[t];
       }
     }
@@ -259,17 +265,48 @@ class ForcedAngles {
 
   bool is_corner(Index v) const { return mesh_.nodes[v].dimension == 0; }
 
-  /// An edge straight across a face, from one of its curves to another, or all of a CAD edge, so short that even seen
-  /// at a right angle from the tet's opposite edge it makes a small angle.
+  /// An edge across a face, from one of its curves to another, or all of a CAD edge, so near the other curve that the
+  /// tet's opposite edge sees it under a small angle.
   std::optional<ForcedAngle> narrow_face(const Pair& from, const Pair& across) const {
     const auto found = across_.find(across);
-    if (found == across_.end() || found->second == kOutside) return std::nullopt;
+    if (found == across_.end() || found->second.empty()) return std::nullopt;
     const auto segment = segments_.find(across);
     if (segment != segments_.end() && !(is_corner(across[0]) && is_corner(across[1]))) return std::nullopt;
-    const double angle = seen_under(from, across);
+    double angle = seen_under(from, across);
+    for (const Over& over : found->second) angle = std::min(angle, strip(from, across, over.third));
     if (angle >= kSmall) return std::nullopt;
     const std::vector<Index> edges = segment == segments_.end() ? curves_of(across) : std::vector{segment->second};
-    return narrow(found->second, edges, angle, 0.5 * (at(across[0]) + at(across[1])));
+    return narrow(found->second.front().face, edges, angle, 0.5 * (at(across[0]) + at(across[1])));
+  }
+
+  /// A bound of the tet's least angle where an edge is slanted across a strip, with a triangle there whose third vertex
+  /// is on the curve of one end, the foot. The other end, the apex, is hardly higher over the tet's facet at the foot
+  /// than the strip is wide, and the angles at that facet's edges have that height over their distance as sine.
+  double strip(const Pair& from, const Pair& across, Index third) const {
+    double least = 90;
+    for (std::size_t k = 0; k < 2; ++k) {
+      const Index foot = across[k], apex = across[1 - k];
+      if (between_curves({foot, third}) || mesh_.nodes[third].dimension > 1) continue;
+      const Vec3 along = normalized(at(third) - at(foot));
+      const Vec3 nearest = at(foot) + dot(at(apex) - at(foot), along) * along;
+      const Vec3 normal = normalized(cross(at(from[1]) - at(from[0]), at(foot) - at(from[0])));
+      const double height = distance(at(apex), nearest) + std::abs(dot(nearest - at(foot), normal));
+      const double furthest =
+          std::max({acute_distance(apex, from, foot), acute_distance(apex, {foot, from[0]}, from[1]),
+                    acute_distance(apex, {foot, from[1]}, from[0])});
+      if (height < furthest) least = std::min(least, degrees(std::asin(height / furthest)));
+    }
+    return least;
+  }
+
+  /// Of an apex to an edge of a triangle; 0 if the angle there is not acute.
+  double acute_distance(Index apex, const Pair& edge, Index third) const {
+    const Vec3 along = normalized(at(edge[1]) - at(edge[0]));
+    const auto off = [&](Index v) {
+      const Vec3 d = at(v) - at(edge[0]);
+      return d - dot(d, along) * along;
+    };
+    return dot(off(apex), off(third)) > 0 ? norm(off(apex)) : 0;
   }
 
   /// The largest angle under which an edge can be seen from the line of another as near as this, degrees.
@@ -332,7 +369,7 @@ class ForcedAngles {
   QualitySummary& summary_;
   std::vector<Small> small_;
   std::map<Pair, Index> segments_;               ///< of small tets, with their CAD edges
-  std::map<Pair, Index> across_;                 ///< edges between curves that small angles look at, with their face
+  std::map<Pair, std::vector<Over>> across_;     ///< edges between curves that small angles look at
   std::map<Triple, Index> facets_;               ///< of small tets, with their face if they are on the boundary
   std::map<Triple, Index> walls_;                ///< face of the triangle over a segment (two first) and a vertex
   std::map<Pair, std::vector<Sector>> sectors_;  ///< around each segment

@@ -40,11 +40,17 @@ constexpr double kSteepest = 0.5;           ///< gap over distance to a shared e
 constexpr int kToAndFro = 4;                ///< projections towards the closest pair
 constexpr double kContact = 1e-6;           ///< of the body's diagonal: closer sheets are meant to touch
 constexpr std::size_t kNearestPatches = 2;  ///< of each face that a sample is projected from
+constexpr double kWallWidths = 10;          ///< size over the width of a wall
+constexpr double kLeastWallSize = 0.2;      ///< of the size asked, below which no wall goes for its angles
 constexpr std::size_t kBlock = 256;         ///< patches or edge samples per task
 constexpr std::size_t kMostProbes = 20000;  ///< per patch, or stretch between two samples of an edge
 
 /// The size at which the chord height is a quarter of the gap.
 double gap_size(double gap, double curvature) { return std::sqrt(2 * gap / curvature); }
+
+/// The size at which tets through a wall have no angle below about five degrees, but at least a share of the size
+/// asked.
+double wall_size(double gap, double asked) { return std::max(kWallWidths * gap, kLeastWallSize * asked); }
 
 /// Gaps wider than this demand nothing of an element of this size; beyond the radius a chord height means nothing.
 double reach_of(double curvature, double size) { return std::min(0.5 * curvature * size * size, 0.5 / curvature); }
@@ -380,6 +386,14 @@ class GapSearch {
     return false;
   }
 
+  /// Whether a solid is between a point of a face and a foot.
+  bool is_wall(const Probe& probe, const Foot& foot) const {
+    if (!probe.face.valid()) return false;
+    const ModelFace& face = scene_.input.model.faces[probe.face];
+    const bool ahead = (dot(foot.point - probe.point, probe.axis) > 0) != face.reversed;
+    return (ahead ? face.front : face.back).valid();
+  }
+
   /// Gives both sides what the gap demands of them; returns what it demands of the probe.
   double emit(const Probe& probe, FaceId other, const Foot& foot) {
     double demand = probe.size;
@@ -387,8 +401,13 @@ class GapSearch {
     FaceId own = probe.face;
     if (!own.valid() && !scene_.input.model.edges[probe.edge].faces.empty())
       own = scene_.input.model.edges[probe.edge].faces.front();
+    const bool wall = is_wall(probe, foot);
+    const auto wanted = [&](double curvature) {
+      const double size = gap_size(foot.gap, curvature);
+      return wall ? std::min(size, wall_size(foot.gap, scene_.input.options.size)) : size;
+    };
     if (probe.curvature > 0 && gap_size(foot.gap, probe.curvature) < probe.size) {
-      demand = gap_size(foot.gap, probe.curvature);
+      demand = std::min(probe.size, wanted(probe.curvature));
       sources_.push_back({probe.point, demand, SizeReason::gap, own, other, foot.gap});
     }
     const FaceBending& bend = bending_of(other);
@@ -396,7 +415,7 @@ class GapSearch {
     // Where the other side is as sharply bent, its own samples are as dense, and find this gap themselves.
     const bool coarser = curvature < 0.5 * probe.curvature;
     if (coarser && curvature > 0 && gap_size(foot.gap, curvature) < field.at_face(other, foot.point))
-      sources_.push_back({foot.point, gap_size(foot.gap, curvature), SizeReason::gap, other, own, foot.gap});
+      sources_.push_back({foot.point, wanted(curvature), SizeReason::gap, other, own, foot.gap});
     return demand;
   }
 

@@ -467,6 +467,35 @@ TEST(ForcedAngles, AShortEdgeAlongOneCurveIsTheMeshsFault) {
   EXPECT_TRUE(validate(narrow_face(1, 1), nullptr, 1, context).quality.forced.empty());
 }
 
+/// A flat tet over a strip 0.2 wide between two curves: its edge from one to the other runs along the strip, beside the
+/// segment from vertex 0 to vertex 4. Vertex 4 is on the first curve, or within the face.
+Mesh over_a_strip(std::uint8_t dimension) {
+  Mesh mesh = thin_wedge();
+  mesh.points = {{0, 0, 0}, {8, 0, 0.2}, {2, 10, 0}, {12, 9, 0}, {10, 0, 0}};
+  mesh.nodes = {{1, 0, {}}, {1, 1, {}}, {2, 0, {}}, {2, 0, {}}, {dimension, 0, {}}};
+  mesh.tets = {{0, 3, 2, 1}};
+  mesh.triangles = {{0, 2, 3}, {0, 4, 1}};
+  mesh.triangle_face = {0, 2};
+  mesh.segments = {{0, 4}};
+  mesh.segment_edge = {0};
+  mesh.corner_nodes.clear();
+  mesh.vertices.clear();
+  mesh.edges.push_back({2, "", {}, {}, {}});
+  return mesh;
+}
+
+TEST(ForcedAngles, AStripIsTheBodysOwnAlsoWhereTheMeshCrossesItSlanted) {
+  Context context;
+  const QualitySummary quality = validate(over_a_strip(1), nullptr, 1, context).quality;
+  EXPECT_EQ(quality.below_five_degrees, 1u);
+  EXPECT_EQ(quality.forced_below_five, 1u);
+  ASSERT_EQ(quality.forced.size(), 1u);
+  EXPECT_EQ(quality.forced[0].faces, std::vector<std::uint32_t>{2});
+  EXPECT_EQ(quality.forced[0].edges, (std::vector<std::uint32_t>{0, 1}));
+  EXPECT_NEAR(quality.forced[0].angle, quality.worst_dihedral, 1e-3);
+  EXPECT_TRUE(validate(over_a_strip(2), nullptr, 1, context).quality.forced.empty());
+}
+
 TEST(ForcedAngles, FlatTetOffTheEdgesIsTheMeshsFault) {
   Mesh mesh = thin_wedge();
   mesh.segments.clear();

@@ -261,6 +261,17 @@ TEST(Gaps, SaysWhichFacesAndHowWide) {
   }
 }
 
+// Chord heights would allow sqrt(2 * 0.03 * 10) = 0.77.
+TEST(Gaps, AThinWallIsMeshedForTheAnglesThroughIt) {
+  const Model model = test::make_shell(10, 9.97);
+  SizingOptions options = plain(model, 2);
+  options.gaps = true;
+  const Sized shell = sized(model, options);
+  expect_size(shell.at({0, 0, 9.97}), 0.4);  // a fifth of the size asked
+  options.size *= 0.5;
+  expect_size(sized(model, options).at({0, 0, 9.97}), 0.3);  // ten walls
+}
+
 TEST(AskedSizes, GrowFromTheirEntities) {
   const Model model = test::make_box(10, 10, 10);
   SizingOptions options = plain(model, 4);
