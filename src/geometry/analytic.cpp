@@ -67,8 +67,10 @@ class Cone final : public Surface {
   std::optional<Vec2> project(Vec3 point, Vec2 guess) const override {
     const Vec3 p = local(at_, point);
     const double rho = std::hypot(p.x, p.y);
-    // The ruling through the point's half-plane, and the opposite one, which is the guess's if its radius is negative.
-    const double side = radius(guess.y) < 0 ? -1 : 1;
+    // On the ruling in the point's half-plane, or on the one opposite if that is nearer: then the point is level with
+    // the other nappe. The guess does not tell: near the apex its radius is a rounding error.
+    const auto off = [&](double r) { return std::abs((r - radius_) * cosine_ - p.z * sine_); };
+    const double side = off(-rho) < off(rho) ? -1 : 1;
     const double u = rho > 0 ? std::atan2(side * p.y, side * p.x) : guess.x;
     const double v = (side * rho - radius_) * sine_ + p.z * cosine_;
     return Vec2{nearest_turn(u, guess.x), v / at_.unit};

@@ -1,8 +1,8 @@
 // The triangles of each CAD face against its surface: vertices on it, no folds, no part of it left uncovered.
 //
-// A foot is searched from the parameters of nearby nodes, then from a grid of samples; parameters stored in the mesh
-// are only a first guess and are never believed. Faces are independent, so they run in parallel, each with a clone of
-// its surface.
+// A foot is searched from the parameters of the node and of nearby ones, then from a grid of samples; parameters stored
+// in the mesh are only a first guess and are never believed. Faces are independent, so they run in parallel, each with
+// a clone of its surface.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -132,18 +132,38 @@ class FaceTask {
     const auto i = static_cast<std::size_t>(at - nodes_.begin());
     if (known_[i] != 0) return feet_[i];
     known_[i] = 1;
-    std::vector<Vec2> guesses;
-    const NodeOnCad* owner = node < m_.mesh.nodes.size() ? &m_.mesh.nodes[node] : nullptr;
-    if (owner != nullptr && owner->dimension == 2 && owner->entity < m_.faces.size() &&
-        m_.faces[owner->entity] == id_) {
-      guesses.push_back({owner->parameter[0], owner->parameter[1]});
-    }
+    std::vector<Vec2> guesses = guesses_of(node);
     guesses.insert(guesses.end(), others.begin(), others.end());
     const double limit = m_.limit(face_.tolerance, node);
     feet_[i] = projector_.project(m_.points[node], guesses, limit);
     const double distance = feet_[i] ? feet_[i]->distance : std::numeric_limits<double>::infinity();
     if (!(distance <= limit)) outcome.off.push_back({node, distance, limit});
     return feet_[i];
+  }
+
+  /// Where the mesh says that a node is on this face, or on the parameter curves of an edge of it.
+  std::vector<Vec2> guesses_of(std::uint32_t node) const {
+    if (node >= m_.mesh.nodes.size()) return {};
+    const NodeOnCad& owner = m_.mesh.nodes[node];
+    if (owner.dimension == 2 && owner.entity < m_.faces.size() && m_.faces[owner.entity] == id_)
+      return {{owner.parameter[0], owner.parameter[1]}};
+    if (owner.dimension == 0 && owner.entity < m_.vertices.size()) return ends_at(m_.vertices[owner.entity]);
+    if (owner.dimension != 1 || owner.entity >= m_.edges.size()) return {};
+    const auto [first, last] = std::equal_range(uses_.begin(), uses_.end(), UseOfEdge{m_.edges[owner.entity], nullptr});
+    std::vector<Vec2> guesses;
+    for (auto use = first; use != last; ++use) guesses.push_back(use->curve->value(owner.parameter[0]));
+    return guesses;
+  }
+
+  /// Ends of parameter curves at a vertex.
+  std::vector<Vec2> ends_at(CadVertexId vertex) const {
+    std::vector<Vec2> ends;
+    for (const UseOfEdge& use : uses_) {
+      const ModelEdge& edge = m_.model.edges[use.edge];
+      if (edge.start == vertex) ends.push_back(use.curve->value(edge.low));
+      if (edge.end == vertex) ends.push_back(use.curve->value(edge.high));
+    }
+    return ends;
   }
 
   void check_covered(Vec3 sample, FaceOutcome& outcome) {
@@ -168,11 +188,29 @@ class FaceTask {
     return nodes;
   }
 
+  struct UseOfEdge {
+    EdgeId edge;
+    const ParameterCurve* curve;
+    bool operator<(const UseOfEdge& other) const { return edge < other.edge; }
+  };
+
+  static std::vector<UseOfEdge> uses_of(const ModelFace& face) {
+    std::vector<UseOfEdge> uses;
+    const auto add = [&](const EdgeUse& use) {
+      if (use.curve) uses.push_back({use.edge, use.curve.get()});
+    };
+    for (const Loop& loop : face.loops) std::for_each(loop.uses.begin(), loop.uses.end(), add);
+    std::for_each(face.internal_edges.begin(), face.internal_edges.end(), add);
+    std::stable_sort(uses.begin(), uses.end());
+    return uses;
+  }
+
   const MeshOnModel& m_;
   FaceId id_;
   const ModelFace& face_;
   const BoxTree& tree_;
   FaceProjector projector_;
+  std::vector<UseOfEdge> uses_ = uses_of(face_);
   std::vector<std::uint32_t> nodes_ = nodes_of(m_, id_);
   std::vector<std::uint8_t> known_ = std::vector<std::uint8_t>(nodes_.size(), 0);
   std::vector<std::optional<Foot>> feet_ = std::vector<std::optional<Foot>>(nodes_.size());

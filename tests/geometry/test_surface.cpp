@@ -112,6 +112,21 @@ TEST(Surfaces, NormalAtPolesIsTheLimit) {
   }
 }
 
+// The guess at the apex has a radius that is a rounding error, of either sign.
+TEST(Surfaces, ConesProjectOnTheNappeThePointIsLevelWith) {
+  const auto cone = make_cone({}, 0.3, 0.5);
+  const double apex = -0.3 / std::sin(0.5);
+  for (const double away : {-0.5, -1e-3, 1e-3, 0.5})
+    for (const double guess : {apex - 1e-12, apex, apex + 1e-12, 0.0})
+      for (const double u : {0.5, 3.0}) {
+        const Vec3 p = cone->value({u, apex + away});
+        const auto foot = cone->project(p, {u, guess});
+        ASSERT_TRUE(foot);
+        EXPECT_LT(distance(cone->value(*foot), p), 1e-12) << away << " from " << guess;
+        EXPECT_NEAR(foot->y, apex + away, 1e-9);
+      }
+}
+
 TEST(Curves, EllipseAndProjection) {
   const auto ellipse = make_ellipse(tilted(), 0.4, 0.2);
   const double h = 1e-5;

@@ -412,6 +412,56 @@ Mesh thin_wedge() {
   return mesh;
 }
 
+/// A cylinder that finds feet from a guess hard by only, as threads of many turns do: there others are as good.
+class Wound final : public Surface {
+ public:
+  explicit Wound(const Surface& real) : real_(real.clone()) {}
+  SurfaceKind kind() const override { return SurfaceKind::other; }
+  Vec3 value(Vec2 uv) const override { return real_->value(uv); }
+  SurfaceFirst first(Vec2 uv) const override { return real_->first(uv); }
+  SurfaceSecond second(Vec2 uv) const override { return real_->second(uv); }
+  double period_u() const override { return real_->period_u(); }
+  std::unique_ptr<Surface> clone() const override { return std::make_unique<Wound>(*real_); }
+  std::optional<Vec2> project(Vec3 point, Vec2 guess) const override {
+    const auto foot = real_->project(point, guess);
+    return foot && std::abs(foot->x - guess.x) < 1e-3 ? foot : guess;
+  }
+
+ private:
+  std::unique_ptr<Surface> real_;
+};
+
+/// Says of every node of a segment where on its edge it is, and of every corner which vertex it is.
+void locate_on_edges(const Model& model, Mesh& mesh) {
+  mesh.nodes.assign(mesh.points.size(), {});
+  for (std::size_t i = 0; i < mesh.segments.size(); ++i) {
+    const ModelEdge& edge = model.edges[EdgeId(mesh.segment_edge[i])];
+    for (const std::uint32_t v : mesh.segments[i]) {
+      double best = 1, t = edge.low;  // from every side: a projection is local
+      const Vec3 p = model.frame.to_working({mesh.points[v][0], mesh.points[v][1], mesh.points[v][2]});
+      for (int k = 0; k <= 8; ++k) {
+        const double found = edge.curve->project(p, edge.low + 0.125 * k * (edge.high - edge.low), edge.low, edge.high);
+        const double d = distance(p, edge.curve->value(found));
+        if (d < best) best = d, t = found;
+      }
+      mesh.nodes[v] = {1, mesh.segment_edge[i], {t, 0}};
+    }
+  }
+  for (std::uint32_t v = 0; v < mesh.corner_nodes.size(); ++v) mesh.nodes[mesh.corner_nodes[v]] = {0, v, {}};
+}
+
+TEST(Validate, FeetOfNodesOnEdgesAreFoundFromTheirParameterCurves) {
+  Sample s = cylinder(13);
+  for (std::size_t f = 0; f < s.model.faces.size(); ++f) {
+    ModelFace& face = s.model.faces[FaceId(f)];
+    if (face.surface->kind() == SurfaceKind::cylinder) face.surface = std::make_shared<Wound>(*face.surface);
+  }
+  EXPECT_NE(find(check(s, true), "vertex_off_face"), nullptr);
+  locate_on_edges(s.model, s.mesh);
+  const ValidationReport report = check(s, true);
+  EXPECT_EQ(find(report, "vertex_off_face"), nullptr) << words(report);
+}
+
 TEST(ForcedAngles, ThinWedgeOfTwoFacesIsTheBodysOwn) {
   Context context;
   const QualitySummary quality = validate(thin_wedge(), nullptr, 1, context).quality;
