@@ -19,6 +19,10 @@ constexpr std::size_t kPairsPerTriangle = 4;
 
 // Cosine of the angle to the surface's normal, 84 degrees, from which a facet counts as folded.
 constexpr double kFolded = 0.1;
+// The surface near a facet is looked at where the mean normal is off by more than 26 degrees, or the facet by this
+// share of its longest edge.
+constexpr double kStraight = 0.9;
+constexpr double kFar = 0.05;
 
 class CrossingCure {
  public:
@@ -75,9 +79,19 @@ class CrossingCure {
 
   std::vector<std::uint32_t> find_folds() const {
     std::vector<std::uint32_t> folds;
-    for (std::uint32_t i = 0; i < triangles_.size(); ++i)
-      if (facing(conjoint_, triangles_[i].face, triangles_[i].triangle) < kFolded) folds.push_back(i);
+    for (std::uint32_t i = 0; i < triangles_.size(); ++i) {
+      const SurfaceTriangle& t = triangles_[i];
+      double cosine = facing(conjoint_, t.face, t.triangle);
+      if (cosine < kStraight || deviation(conjoint_, t.face, t.triangle) > kFar * longest_edge(t))
+        cosine = std::min(cosine, facing_at_foot(conjoint_, t.face, t.triangle));
+      if (cosine < kFolded) folds.push_back(i);
+    }
     return folds;
+  }
+
+  double longest_edge(const SurfaceTriangle& t) const {
+    const auto at = [&](std::size_t k) { return conjoint_.vertices().position(t.vertices[k]); };
+    return std::max({distance(at(0), at(1)), distance(at(1), at(2)), distance(at(2), at(0))});
   }
 
   bool unfold(const std::vector<std::uint32_t>& folds) {

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <array>
+#include <limits>
 
 #include "boundary/boundary_mesh.h"
 #include "boundary/criteria.h"
@@ -160,6 +161,28 @@ double facing(const Conjoint& conjoint, FaceId face, TriangleId triangle) {
     p[k] = conjoint.vertices().position(node.vertex);
   }
   return facing(*conjoint.model().faces[face].surface, mesh.chart, q, p);
+}
+
+double facing_at_foot(const Conjoint& conjoint, FaceId face, TriangleId triangle) {
+  const FaceMesh& mesh = conjoint.boundary().faces[face];
+  const Surface& surface = *conjoint.model().faces[face].surface;
+  std::array<Vec3, 3> p;
+  std::array<Vec2, 4> guesses{mesh.chart.to_uv(chart_centroid(mesh, triangle))};
+  for (std::size_t k = 0; k < 3; ++k) {
+    const FaceNode& node = mesh.node(mesh.triangle(triangle).node[k]);
+    p[k] = conjoint.vertices().position(node.vertex);
+    guesses[k + 1] = mesh.chart.to_uv(node.q);
+  }
+  const Vec3 centroid = (1.0 / 3) * (p[0] + p[1] + p[2]);
+  const Vec3 normal = normalized(cross(p[1] - p[0], p[2] - p[0]));
+  double nearest = std::numeric_limits<double>::infinity(), cosine = 1;
+  for (const Vec2 guess : guesses) {
+    const auto foot = surface.project(centroid, guess);
+    if (!foot || !(distance(surface.value(*foot), centroid) < nearest)) continue;
+    nearest = distance(surface.value(*foot), centroid);
+    cosine = dot(normal, surface.normal(*foot));
+  }
+  return cosine;
 }
 
 double segment_deviation(const Conjoint& conjoint, EdgeId edge, VertexId a, VertexId b) {

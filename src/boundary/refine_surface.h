@@ -29,6 +29,9 @@ ConjointResult refine_segment(Conjoint& conjoint, EdgeId edge, VertexId a, Verte
 double deviation(const Conjoint& conjoint, FaceId face, TriangleId triangle);
 /// As facing in boundary/criteria.h, of a triangle of t_3d. A fold has it at or below zero.
 double facing(const Conjoint& conjoint, FaceId face, TriangleId triangle);
+/// Cosine of the angle between a triangle's normal and the surface's where that is nearest to its centroid, searched
+/// from the same place of the chart and from the corners, as the final check does; 1 if no such place is found.
+double facing_at_foot(const Conjoint& conjoint, FaceId face, TriangleId triangle);
 /// Distance from the middle of a segment to the curve at the middle parameter.
 double segment_deviation(const Conjoint& conjoint, EdgeId edge, VertexId a, VertexId b);
 

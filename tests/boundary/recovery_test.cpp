@@ -177,6 +177,20 @@ TEST(PaperCounts, RemeshingCasesThreeAndFourAreMet) {
   EXPECT_GT(sum.case4, 0u);
 }
 
+// A facet far from its face can look along the mean normal below it, and still away from the surface it is nearest to.
+TEST(Crossings, NoFacetLooksAwayFromTheSurfaceNextToIt) {
+  for (const auto& [model, size] :
+       {std::pair{make_half_ellipsoid(10, 1), 8.0}, {make_half_ellipsoid(1, 10), 8.0}, {make_torus(5, 4), 12.0}}) {
+    BoundaryRunOptions options{size, 0};
+    options.until = Until::crossings;
+    const auto run = run_boundary(model, options);
+    ASSERT_FALSE(HasFailure());
+    EXPECT_TRUE(run->crossings.failures.empty());
+    for (const SurfaceTriangle& t : surface_triangles(run->boundary))
+      EXPECT_GE(facing_at_foot(*run->conjoint, t.face, t.triangle), 0) << "face " << t.face.value();
+  }
+}
+
 TEST(Crossings, CoarseThinShellWithoutGapSizesIsCured) {
   const Model model = make_shell(10, 9.8);
   BoundaryRunOptions options{8, 0};
