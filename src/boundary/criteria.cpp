@@ -148,7 +148,7 @@ bool bent_beside_pole(const Corner& a, const Corner& b, const ChartSurface& on) 
   if (arc_estimate(a, b) > kWrap * norm(chord) + kNoLength) return true;
   const Vec3 middle = on.surface.value(on.chart.to_uv(0.5 * (a.q + b.q)));
   const Vec3 normal = normalized(a.normal + b.normal);
-  return std::abs(dot(middle - a.position - 0.5 * chord, normal)) > kBend * norm(chord);
+  return off_chord(dot(middle - a.position - 0.5 * chord, normal) * normal, chord);
 }
 
 }  // namespace

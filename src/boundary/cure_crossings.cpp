@@ -82,16 +82,12 @@ class CrossingCure {
     for (std::uint32_t i = 0; i < triangles_.size(); ++i) {
       const SurfaceTriangle& t = triangles_[i];
       double cosine = facing(conjoint_, t.face, t.triangle);
-      if (cosine < kStraight || deviation(conjoint_, t.face, t.triangle) > kFar * longest_edge(t))
+      if (cosine < kStraight ||
+          deviation(conjoint_, t.face, t.triangle) > kFar * longest_edge(conjoint_.vertices(), t.vertices))
         cosine = std::min(cosine, facing_at_foot(conjoint_, t.face, t.triangle));
       if (cosine < kFolded) folds.push_back(i);
     }
     return folds;
-  }
-
-  double longest_edge(const SurfaceTriangle& t) const {
-    const auto at = [&](std::size_t k) { return conjoint_.vertices().position(t.vertices[k]); };
-    return std::max({distance(at(0), at(1)), distance(at(1), at(2)), distance(at(2), at(0))});
   }
 
   bool unfold(const std::vector<std::uint32_t>& folds) {

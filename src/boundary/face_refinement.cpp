@@ -254,10 +254,7 @@ class FaceRefiner {
     added_.push_back({position, mesh_.chart.to_uv(point.q)});
     const NodeId made = mesh_.insert(vertex, point.q, *holder, wanted_, changed_);
     CURVETET_CHECK(made.value() + 1 == corners_.size());
-    // The new node's own edges too: what the chart or a bent edge forbade before may be legal now.
-    mesh_.restore(changed_, wanted_, restored_);
     enqueue(changed_);
-    enqueue(restored_);
     return true;
   }
 
@@ -312,7 +309,7 @@ class FaceRefiner {
   std::vector<std::uint32_t> stamps_;  ///< by triangle: entries with an older stamp are stale
   std::priority_queue<Entry> queue_;
   std::vector<AddedVertex> added_;
-  std::vector<TriangleId> changed_, restored_, cavity_;
+  std::vector<TriangleId> changed_, cavity_;
 };
 
 }  // namespace

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <limits>
+#include <optional>
 
 #include "boundary/boundary_mesh.h"
 #include "boundary/criteria.h"
@@ -14,18 +15,28 @@ namespace curvetet {
 
 namespace {
 
-double longest_edge(const VertexStore& vertices, const std::array<VertexId, 3>& v) {
-  double longest = 0;
-  for (std::size_t k = 0; k < 3; ++k)
-    longest = std::max(longest, distance(vertices.position(v[k]), vertices.position(v[(k + 1) % 3])));
-  return longest;
-}
-
 Vec2 chart_centroid(const FaceMesh& mesh, TriangleId t) {
   const FaceTriangle& triangle = mesh.triangle(t);
   Vec2 sum{};
   for (NodeId n : triangle.node) sum = sum + mesh.node(n).q;
   return (1.0 / 3) * sum;
+}
+
+/// Corners of a triangle in the chart and in space.
+struct Places {
+  std::array<Vec2, 3> q;
+  std::array<Vec3, 3> p;
+};
+
+Places places_of(const Conjoint& conjoint, FaceId face, TriangleId triangle) {
+  const FaceMesh& mesh = conjoint.boundary().faces[face];
+  Places at;
+  for (std::size_t k = 0; k < 3; ++k) {
+    const FaceNode& node = mesh.node(mesh.triangle(triangle).node[k]);
+    at.q[k] = node.q;
+    at.p[k] = conjoint.vertices().position(node.vertex);
+  }
+  return at;
 }
 
 class TriangleRefiner {
@@ -143,6 +154,13 @@ ConjointResult refine_segment(Conjoint& conjoint, EdgeId edge, VertexId a, Verte
   return conjoint.split_segment(edge, a, b, options.origin);
 }
 
+double longest_edge(const VertexStore& vertices, const std::array<VertexId, 3>& v) {
+  double longest = 0;
+  for (std::size_t k = 0; k < 3; ++k)
+    longest = std::max(longest, distance(vertices.position(v[k]), vertices.position(v[(k + 1) % 3])));
+  return longest;
+}
+
 double deviation(const Conjoint& conjoint, FaceId face, TriangleId triangle) {
   const FaceMesh& mesh = conjoint.boundary().faces[face];
   Vec3 centroid{};
@@ -152,37 +170,25 @@ double deviation(const Conjoint& conjoint, FaceId face, TriangleId triangle) {
 }
 
 double facing(const Conjoint& conjoint, FaceId face, TriangleId triangle) {
-  const FaceMesh& mesh = conjoint.boundary().faces[face];
-  std::array<Vec2, 3> q;
-  std::array<Vec3, 3> p;
-  for (std::size_t k = 0; k < 3; ++k) {
-    const FaceNode& node = mesh.node(mesh.triangle(triangle).node[k]);
-    q[k] = node.q;
-    p[k] = conjoint.vertices().position(node.vertex);
-  }
-  return facing(*conjoint.model().faces[face].surface, mesh.chart, q, p);
+  const Places at = places_of(conjoint, face, triangle);
+  return facing(*conjoint.model().faces[face].surface, conjoint.boundary().faces[face].chart, at.q, at.p);
 }
 
 double facing_at_foot(const Conjoint& conjoint, FaceId face, TriangleId triangle) {
   const FaceMesh& mesh = conjoint.boundary().faces[face];
   const Surface& surface = *conjoint.model().faces[face].surface;
-  std::array<Vec3, 3> p;
-  std::array<Vec2, 4> guesses{mesh.chart.to_uv(chart_centroid(mesh, triangle))};
-  for (std::size_t k = 0; k < 3; ++k) {
-    const FaceNode& node = mesh.node(mesh.triangle(triangle).node[k]);
-    p[k] = conjoint.vertices().position(node.vertex);
-    guesses[k + 1] = mesh.chart.to_uv(node.q);
-  }
+  const auto [q, p] = places_of(conjoint, face, triangle);
   const Vec3 centroid = (1.0 / 3) * (p[0] + p[1] + p[2]);
-  const Vec3 normal = normalized(cross(p[1] - p[0], p[2] - p[0]));
-  double nearest = std::numeric_limits<double>::infinity(), cosine = 1;
-  for (const Vec2 guess : guesses) {
-    const auto foot = surface.project(centroid, guess);
-    if (!foot || !(distance(surface.value(*foot), centroid) < nearest)) continue;
-    nearest = distance(surface.value(*foot), centroid);
-    cosine = dot(normal, surface.normal(*foot));
+  double nearest = std::numeric_limits<double>::infinity();
+  std::optional<Vec2> foot;
+  for (const Vec2 guess : {chart_centroid(mesh, triangle), q[0], q[1], q[2]}) {
+    const auto found = surface.project(centroid, mesh.chart.to_uv(guess));
+    const double away = found ? distance(surface.value(*found), centroid) : nearest;
+    if (!(away < nearest)) continue;
+    nearest = away;
+    foot = found;
   }
-  return cosine;
+  return foot ? dot(normalized(cross(p[1] - p[0], p[2] - p[0])), surface.normal(*foot)) : 1;
 }
 
 double segment_deviation(const Conjoint& conjoint, EdgeId edge, VertexId a, VertexId b) {

@@ -24,6 +24,8 @@ ConjointResult refine_triangle(Conjoint& conjoint, FaceId face, TriangleId trian
 ConjointResult refine_segment(Conjoint& conjoint, EdgeId edge, VertexId a, VertexId b,
                               const SurfaceRefinement& options);
 
+double longest_edge(const VertexStore& vertices, const std::array<VertexId, 3>& triangle);
+
 /// Distance from the centroid of a triangle of t_3d to the point of the surface at the same place of the chart: how far
 /// the facet is from its face.
 double deviation(const Conjoint& conjoint, FaceId face, TriangleId triangle);

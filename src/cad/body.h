@@ -39,6 +39,9 @@ const std::vector<Label>& labels_of(const CadBody& body, TopAbs_ShapeEnum type);
 /// Distinct sub-shapes of a type in the order of TopExp::MapShapes.
 TopTools_IndexedMapOfShape sub_shapes(const TopoDS_Shape& shape, TopAbs_ShapeEnum type);
 
+/// Signed volume within the faces of a shape, each integrated adaptively.
+double volume_of(const TopoDS_Shape& shape);
+
 /// Numbers all sub-shapes 1..n, without names.
 void label_all(CadBody& body);
 

@@ -37,9 +37,6 @@ constexpr double kInfinite = 1e50;
 constexpr double kLooseBox = 3;
 /// A solid whose volume over its area to the power 3/2 is less than this has none (a ball has 0.09).
 constexpr double kFlat = 1e-10;
-/// Of each face's part in a volume. The kernel's plain Gauss rule is off by a percent on threads and bowls given as
-/// B-splines, and its Gauss-Kronrod rule may not end.
-constexpr double kVolumeError = 1e-5;
 /// Of the body's diagonal: vertices farther apart are never joined, whatever their tolerances say.
 constexpr double kLargestJoin = 1e-4;
 constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
@@ -146,11 +143,7 @@ class Converter {
   double shell_volume(const TopoDS_Shape& shell, std::size_t number) {
     auto& volumes = body_.measures.shell_volumes;
     if (volumes.size() <= number) volumes.resize(number + 1, kUnknown);
-    if (std::isnan(volumes[number])) {
-      GProp_GProps properties;
-      BRepGProp::VolumeProperties(shell, properties, kVolumeError, false, false);
-      volumes[number] = properties.Mass();
-    }
+    if (std::isnan(volumes[number])) volumes[number] = volume_of(shell);
     return volumes[number];
   }
 

@@ -6,10 +6,8 @@
 
 #include <BOPAlgo_Builder.hxx>
 #include <BRepBndLib.hxx>
-#include <BRepGProp.hxx>
 #include <BRep_Builder.hxx>
 #include <Bnd_Box.hxx>
-#include <GProp_GProps.hxx>
 #include <TopExp_Explorer.hxx>
 #include <TopoDS_Compound.hxx>
 #include <cmath>
@@ -20,12 +18,6 @@ namespace curvetet {
 namespace {
 
 constexpr double kVolume = 1e-4;  ///< relative change of a solid's volume that fusing may make
-
-double volume_of(const TopoDS_Shape& solid) {
-  GProp_GProps properties;
-  BRepGProp::VolumeProperties(solid, properties, false, false, false);
-  return properties.Mass();
-}
 
 struct FaceBox {
   Bnd_Box box;

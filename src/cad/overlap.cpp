@@ -11,11 +11,9 @@
 #include <BRepBuilderAPI_MakeVertex.hxx>
 #include <BRepClass3d_SolidClassifier.hxx>
 #include <BRepExtrema_DistShapeShape.hxx>
-#include <BRepGProp.hxx>
 #include <BRep_Builder.hxx>
 #include <BRep_Tool.hxx>
 #include <Bnd_Box.hxx>
-#include <GProp_GProps.hxx>
 #include <TopExp_Explorer.hxx>
 #include <TopoDS.hxx>
 #include <TopoDS_Edge.hxx>
@@ -116,10 +114,7 @@ class Part {
 /// solids the classifier is wrong.
 double common_volume(const TopoDS_Shape& a, const TopoDS_Shape& b) {
   BRepAlgoAPI_Common common(a, b);
-  if (!common.IsDone() || common.Shape().IsNull()) return 0;
-  GProp_GProps properties;
-  BRepGProp::VolumeProperties(common.Shape(), properties, false, false, false);
-  return std::abs(properties.Mass());
+  return common.IsDone() && !common.Shape().IsNull() ? std::abs(volume_of(common.Shape())) : 0;
 }
 
 }  // namespace

@@ -5,11 +5,9 @@
 #include <BRepBndLib.hxx>
 #include <BRepBuilderAPI_Sewing.hxx>
 #include <BRepClass3d_SolidClassifier.hxx>
-#include <BRepGProp.hxx>
 #include <BRep_Builder.hxx>
 #include <BRep_Tool.hxx>
 #include <Bnd_Box.hxx>
-#include <GProp_GProps.hxx>
 #include <TopExp_Explorer.hxx>
 #include <TopoDS.hxx>
 #include <TopoDS_Compound.hxx>
@@ -111,11 +109,8 @@ bool contains(const TopoDS_Shell& outer, const TopoDS_Shell& inner) {
 /// Solids from closed shells: a shell inside another one is a void of it, one inside a void a solid again.
 TopoDS_Compound solids_from(const std::vector<TopoDS_Shell>& shells) {
   std::vector<ClosedShell> closed;
-  for (const TopoDS_Shell& shell : shells) {
-    GProp_GProps properties;
-    BRepGProp::VolumeProperties(shell, properties, false, false, false);
-    closed.push_back({shell, std::abs(properties.Mass())});
-  }
+  closed.reserve(shells.size());
+  for (const TopoDS_Shell& shell : shells) closed.push_back({shell, std::abs(volume_of(shell))});
   std::stable_sort(closed.begin(), closed.end(),
                    [](const ClosedShell& a, const ClosedShell& b) { return a.volume > b.volume; });
   for (std::size_t i = 0; i < closed.size(); ++i) {

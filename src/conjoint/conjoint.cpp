@@ -89,13 +89,8 @@ ConjointResult Conjoint::insert_on_face(FaceId face, Vec2 q, TriangleId triangle
     if (cavity.refusal == Refusal::duplicate) return {ConjointRefusal::coincident, {}};
     if (!cavity.ok()) return {ConjointRefusal::locked_cavity, {}};
   }
-  std::vector<TriangleId> changed, restored;
+  std::vector<TriangleId> changed;
   mesh.insert(vertex, q, triangle, criteria_[face], changed);
-  // The new node's own edges, too: flips that the chart forbade before, and those of edges to a pole.
-  mesh.restore(changed, criteria_[face], restored);
-  changed.insert(changed.end(), restored.begin(), restored.end());
-  std::sort(changed.begin(), changed.end());
-  changed.erase(std::unique(changed.begin(), changed.end()), changed.end());
   if (tets_ != nullptr) tets_->commit(cavity);
   touched_.assign(1, {face, std::move(changed)});
   return {ConjointRefusal::none, vertex};

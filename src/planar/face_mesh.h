@@ -116,9 +116,9 @@ class FaceMesh {
 
   /// Would inserting at q be legal? `triangle` contains q. Nothing is changed.
   PlanarRefusal judge_insert(Vec2 q, TriangleId triangle) const;
-  /// Inserts an interior node and restores the criterion by flips of the edges opposite it: each adds an edge at the
-  /// node, so this ends for any criterion. `changed` becomes the triangles touched: those around the node. An invalid
-  /// id, and nothing changed, if judge_insert refuses.
+  /// Inserts an interior node and restores the criterion, first by flips of the edges opposite it (each adds an edge at
+  /// the node, so this ends for any criterion), then as `restore` does: what the chart forbade before may be legal now.
+  /// `changed` becomes the triangles touched. An invalid id, and nothing changed, if judge_insert refuses.
   NodeId insert(VertexId vertex, Vec2 q, TriangleId triangle, const FlipWanted& wanted,
                 std::vector<TriangleId>& changed);
 
@@ -204,6 +204,7 @@ class FaceMesh {
   void place(NodeId n, TriangleId t, std::vector<TriangleId>& fan);
   void place_in_triangle(NodeId n, TriangleId t, std::vector<TriangleId>& fan);
   void place_on_edge(NodeId n, FaceEdge e, std::vector<TriangleId>& fan);
+  void restore_around(std::vector<TriangleId>& changed, const FlipWanted& wanted);
   void flip_star(NodeId n, std::vector<TriangleId>& fan, const FlipWanted& wanted);
   bool can_flip(FaceEdge e) const;
   std::array<TriangleId, 2> flip_edge(FaceEdge e);
@@ -216,8 +217,8 @@ class FaceMesh {
   };
   std::optional<int> pole_apex(TriangleId t) const;
   FaceEdge pass_over_pole(TriangleId t, bool left, PoleRun& run) const;
-  bool fill_to_pole(std::span<const NodeId> ring, const std::vector<NodeId>& images,
-                    std::vector<std::array<NodeId, 3>>& fill) const;
+  std::vector<TriangleId> join_to_pole(std::span<const NodeId> ring, PoleRun& run,
+                                       std::vector<std::array<NodeId, 3>> fill);
   std::vector<TriangleId> leave_ring(TriangleId over, const FlipWanted& wanted);
   std::vector<TriangleId> join_ring(FaceEdge below_pole, const FlipWanted& wanted);
   std::vector<TriangleId> flip_at_pole(FaceEdge edge, const FlipWanted& wanted);

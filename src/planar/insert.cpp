@@ -1,7 +1,7 @@
-// Insertion of a node by splitting what contains it, then Lawson's flips. After an insertion only edges opposite the
-// new node can violate the criterion, and each flip adds an edge at that node, so the loop ends for any criterion,
-// transitive or not. A cavity (Bowyer-Watson) needs the criterion to make star-shaped cavities, which a varying metric
-// does not.
+// Insertion of a node by splitting what contains it, then Lawson's flips. Of a mesh that satisfies the criterion only
+// edges opposite the new node can violate it then, and each flip adds an edge at that node, so the loop ends for any
+// criterion, transitive or not. A cavity (Bowyer-Watson) needs the criterion to make star-shaped cavities, which a
+// varying metric does not.
 #include <algorithm>
 
 #include "planar/corners.h"
@@ -29,7 +29,9 @@ NodeId FaceMesh::insert(VertexId vertex, Vec2 q, TriangleId triangle, const Flip
   if (judge_insert(q, triangle) != PlanarRefusal::none) return NodeId();
   const NodeId n = add_node(vertex, q);
   place(n, triangle, changed);
-  if (wanted) flip_star(n, changed, wanted);
+  if (!wanted) return n;
+  flip_star(n, changed, wanted);
+  restore_around(changed, wanted);
   return n;
 }
 
@@ -159,6 +161,15 @@ bool FaceMesh::flip(FaceEdge edge) {
   return true;
 }
 
+// Adds what restoring touches to the triangles changed so far.
+void FaceMesh::restore_around(std::vector<TriangleId>& changed, const FlipWanted& wanted) {
+  std::vector<TriangleId> touched;
+  restore(changed, wanted, touched);
+  changed.insert(changed.end(), touched.begin(), touched.end());
+  std::sort(changed.begin(), changed.end());
+  changed.erase(std::unique(changed.begin(), changed.end()), changed.end());
+}
+
 // A criterion that is not transitive could flip for ever: the number of flips is bounded by a multiple of the edges.
 void FaceMesh::restore(std::span<const TriangleId> from, const FlipWanted& wanted, std::vector<TriangleId>& changed) {
   struct Waiting {
@@ -180,7 +191,7 @@ void FaceMesh::restore(std::span<const TriangleId> from, const FlipWanted& wante
     stack.pop_back();
     const FaceTriangle& f = triangles_[w.edge.triangle];
     // An edge that moved to another triangle was pushed again by the flip that moved it.
-    if (!f.alive() || f.node[next(w.edge.local)] != w.a || f.node[previous(w.edge.local)] != w.b) continue;
+    if (f.node[next(w.edge.local)] != w.a || f.node[previous(w.edge.local)] != w.b) continue;
     const auto asked = [&](FaceEdge m) {
       return wanted(w.a, w.b, f.node[w.edge.local], triangles_[m.triangle].node[m.local]);
     };

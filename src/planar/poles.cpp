@@ -36,16 +36,18 @@ FaceEdge FaceMesh::pass_over_pole(TriangleId t, bool left, PoleRun& run) const {
     const FaceEdge out{t, left ? next(apex) : previous(apex)};
     if (f.use[out.local] != -1 || !f.neighbour[out.local].valid()) return {};
     const FaceEdge beyond = mirror(out);
-    const auto next_apex = pole_apex(beyond.triangle);
-    if (!next_apex) return beyond;
-    if (triangles_[beyond.triangle].node[*next_apex] != f.node[apex]) return {};
+    const auto its_apex = pole_apex(beyond.triangle);
+    if (!its_apex) return beyond;
+    if (triangles_[beyond.triangle].node[*its_apex] != f.node[apex]) return {};
     t = beyond.triangle;
   }
 }
 
-// Triangles of a ring, from right to left, and of the images: false where none that turns left is found.
-bool FaceMesh::fill_to_pole(std::span<const NodeId> ring, const std::vector<NodeId>& images,
-                            std::vector<std::array<NodeId, 3>>& fill) const {
+// Takes out the cavity and joins a ring, from right to left, to the images; `fill` is what is to lie below the ring.
+// Nothing is changed, and nothing returned, where no triangles that turn left are found.
+std::vector<TriangleId> FaceMesh::join_to_pole(std::span<const NodeId> ring, PoleRun& run,
+                                               std::vector<std::array<NodeId, 3>> fill) {
+  const std::vector<NodeId>& images = run.images;
   const Vec2 along = point(images.back()) - point(images.front());
   std::size_t from = 0;
   for (std::size_t k = 0; k + 1 < ring.size(); ++k) {
@@ -56,14 +58,17 @@ bool FaceMesh::fill_to_pole(std::span<const NodeId> ring, const std::vector<Node
       if (orient2d(point(ring[k]), point(images[m]), point(ring[k + 1])) <= 0) continue;
       if (best == images.size() || off(m) < off(best)) best = m;
     }
-    if (best == images.size()) return false;
+    if (best == images.size()) return {};
     for (; from < best; ++from) fill.push_back({ring[k], images[from], images[from + 1]});
     fill.push_back({ring[k], images[best], ring[k + 1]});
   }
   for (; from + 1 < images.size(); ++from) fill.push_back({ring.back(), images[from], images[from + 1]});
-  return std::all_of(fill.begin(), fill.end(), [this](const std::array<NodeId, 3>& f) {
+  const bool valid = std::all_of(fill.begin(), fill.end(), [this](const std::array<NodeId, 3>& f) {
     return orient2d(point(f[0]), point(f[1]), point(f[2])) > 0;
   });
+  std::vector<TriangleId> made;
+  if (valid) replace_cavity(run.cavity, fill, made);
+  return made;
 }
 
 // The apex of a triangle over the pole leaves the ring: its neighbours there, u and s, are joined.
@@ -78,12 +83,8 @@ std::vector<TriangleId> FaceMesh::leave_ring(TriangleId over, const FlipWanted& 
   const NodeId u = triangles_[right.triangle].node[right.local], s = triangles_[left.triangle].node[left.local];
   // The chart's edges are askew, to either side of the one in space: what only some of them ask for is not asked for.
   if (!wanted(c, run.images.front(), s, u) || !wanted(c, run.images.back(), s, u)) return {};
-  std::vector<std::array<NodeId, 3>> fill{{c, u, s}};
-  if (!fill_to_pole(std::array{u, s}, run.images, fill)) return {};
   run.cavity.insert(run.cavity.end(), {right.triangle, left.triangle});
-  std::vector<TriangleId> made;
-  replace_cavity(run.cavity, fill, made);
-  return made;
+  return join_to_pole(std::array{u, s}, run, {{c, u, s}});
 }
 
 // The node below the edge of two neighbours of the ring, s and u, comes between them.
@@ -104,22 +105,16 @@ std::vector<TriangleId> FaceMesh::join_ring(FaceEdge below_pole, const FlipWante
   run.images.push_back(pole);
   if (left.valid()) pass_over_pole(left, true, run);
   if (right.valid()) pass_over_pole(right, false, run);
-  std::vector<std::array<NodeId, 3>> fill;
-  if (!fill_to_pole(std::array{u, c, s}, run.images, fill)) return {};
   run.cavity.insert(run.cavity.end(), {below_pole.triangle, below.triangle});
-  std::vector<TriangleId> made;
-  replace_cavity(run.cavity, fill, made);
-  return made;
+  return join_to_pole(std::array{u, c, s}, run, {});
 }
 
 std::vector<TriangleId> FaceMesh::flip_at_pole(FaceEdge edge, const FlipWanted& wanted) {
   if (is_constrained(edge) || on_boundary(edge)) return {};
   const FaceEdge m = mirror(edge);
-  for (const FaceEdge e : {edge, m}) {
-    const auto apex = pole_apex(e.triangle);
-    // The edge of the pole itself is constrained: this one leads to the pole from the apex.
-    if (apex) return leave_ring(e.triangle, wanted);
-  }
+  // The edge of the pole itself is constrained: one of a triangle over the pole leads to the pole from its apex.
+  for (const FaceEdge e : {edge, m})
+    if (pole_apex(e.triangle)) return leave_ring(e.triangle, wanted);
   for (const FaceEdge e : {edge, m}) {
     std::vector<TriangleId> made = join_ring(e, wanted);
     if (!made.empty()) return made;

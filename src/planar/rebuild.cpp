@@ -64,12 +64,8 @@ bool FaceMesh::remove_node(NodeId n, const FlipWanted& wanted, std::vector<Trian
   }
   fill.push_back({link_nodes[0], link_nodes[1], link_nodes[2]});
   node_triangle_[n] = TriangleId();
-  std::vector<TriangleId> made;
-  replace_cavity(cavity, fill, made);
-  if (wanted) restore(made, wanted, changed);
-  changed.insert(changed.end(), made.begin(), made.end());
-  std::sort(changed.begin(), changed.end());
-  changed.erase(std::unique(changed.begin(), changed.end()), changed.end());
+  replace_cavity(cavity, fill, changed);
+  if (wanted) restore_around(changed, wanted);
   return true;
 }
 

@@ -146,11 +146,7 @@ NodeId FaceMesh::split(FaceEdge edge, VertexId vertex, Vec2 q, const FlipWanted&
     if (boundary_.size() > boundary_.capacity()) index_boundary();
   }
   std::erase_if(made, [this](TriangleId t) { return !triangles_[t].alive(); });
-  std::vector<TriangleId> flipped;
-  if (wanted) restore(made, wanted, flipped);
-  made.insert(made.end(), flipped.begin(), flipped.end());
-  std::sort(made.begin(), made.end());
-  made.erase(std::unique(made.begin(), made.end()), made.end());
+  if (wanted) restore_around(made, wanted);
   changed = std::move(made);
   return n;
 }

@@ -287,13 +287,12 @@ class ForcedAngles {
     for (std::size_t k = 0; k < 2; ++k) {
       const Index foot = across[k], apex = across[1 - k];
       if (between_curves({foot, third}) || mesh_.nodes[third].dimension > 1) continue;
-      const Vec3 along = normalized(at(third) - at(foot));
-      const Vec3 nearest = at(foot) + dot(at(apex) - at(foot), along) * along;
+      const Vec3 along = at(third) - at(foot);
+      const double share = dot(at(apex) - at(foot), along) / norm2(along);
+      if (!(share >= 0 && share <= 1)) continue;  // not beside the segment: the curves may meet at a wide angle there
+      const Vec3 nearest = at(foot) + share * along;
       const Vec3 normal = normalized(cross(at(from[1]) - at(from[0]), at(foot) - at(from[0])));
-      // Over a facet of a face, which has the face's own plane, the strip may be slanted.
-      const bool on_face = facets_.at(ordered(Triple{foot, from[0], from[1]})) != kOutside;
-      const double height = on_face ? std::abs(dot(at(apex) - at(foot), normal))
-                                    : distance(at(apex), nearest) + std::abs(dot(nearest - at(foot), normal));
+      const double height = distance(at(apex), nearest) + std::abs(dot(nearest - at(foot), normal));
       const double furthest =
           std::max({acute_distance(apex, from, foot), acute_distance(apex, {foot, from[0]}, from[1]),
                     acute_distance(apex, {foot, from[1]}, from[0])});

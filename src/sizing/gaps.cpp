@@ -407,7 +407,7 @@ class GapSearch {
       return wall ? std::min(size, wall_size(foot.gap, scene_.input.options.size)) : size;
     };
     if (probe.curvature > 0 && gap_size(foot.gap, probe.curvature) < probe.size) {
-      demand = std::min(probe.size, wanted(probe.curvature));
+      demand = wanted(probe.curvature);
       sources_.push_back({probe.point, demand, SizeReason::gap, own, other, foot.gap});
     }
     const FaceBending& bend = bending_of(other);

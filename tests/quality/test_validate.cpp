@@ -544,6 +544,18 @@ TEST(ForcedAngles, AStripIsTheBodysOwnAlsoWhereTheMeshCrossesItSlanted) {
   EXPECT_EQ(quality.forced[0].edges, (std::vector<std::uint32_t>{0, 1}));
   EXPECT_NEAR(quality.forced[0].angle, quality.worst_dihedral, 1e-3);
   EXPECT_TRUE(validate(over_a_strip(2), nullptr, 1, context).quality.forced.empty());
+  // The apex beyond the segment's end: the curves may part at any angle there, and the tet be flat for no reason.
+  Mesh beyond = over_a_strip(1);
+  beyond.points[4] = {7, 0, 0};
+  EXPECT_TRUE(validate(beyond, nullptr, 1, context).quality.forced.empty());
+}
+
+// The strip leaves the facet's plane at a slant, so that the tet is flat however wide the strip is.
+TEST(ForcedAngles, AFlatTetOverAWideFaceIsTheMeshsFault) {
+  Mesh wide = over_a_strip(1);
+  wide.points[1] = {8, -6, 0.2};
+  Context context;
+  EXPECT_TRUE(validate(wide, nullptr, 1, context).quality.forced.empty());
 }
 
 TEST(ForcedAngles, FlatTetOffTheEdgesIsTheMeshsFault) {

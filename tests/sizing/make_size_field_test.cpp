@@ -261,15 +261,18 @@ TEST(Gaps, SaysWhichFacesAndHowWide) {
   }
 }
 
-// Chord heights would allow sqrt(2 * 0.03 * 10) = 0.77.
+// Chord heights allow sqrt(2 * 0.03 * 9.97), as they do where there is no solid between the sheets.
 TEST(Gaps, AThinWallIsMeshedForTheAnglesThroughIt) {
-  const Model model = test::make_shell(10, 9.97);
+  Model model = test::make_shell(10, 9.97);
   SizingOptions options = plain(model, 2);
   options.gaps = true;
   const Sized shell = sized(model, options);
   expect_size(shell.at({0, 0, 9.97}), 0.4);  // a fifth of the size asked
   options.size *= 0.5;
   expect_size(sized(model, options).at({0, 0, 9.97}), 0.3);  // ten walls
+  for (std::size_t f = 0; f < model.faces.size(); ++f)
+    std::swap(model.faces[FaceId(f)].front, model.faces[FaceId(f)].back);
+  expect_size(sized(model, options).at({0, 0, 9.97}), std::sqrt(2 * 0.03 * 9.97));
 }
 
 TEST(AskedSizes, GrowFromTheirEntities) {
