@@ -24,6 +24,9 @@ namespace {
 using NodePair = std::pair<NodeId, NodeId>;
 NodePair ordered(NodeId a, NodeId b) { return a < b ? NodePair{a, b} : NodePair{b, a}; }
 
+/// Sine of a triangle's least angle, below which it counts as flat: half a degree.
+constexpr double kFlatSine = 0.0087;
+
 class March {
  public:
   March(const Conjoint& conjoint, FaceId face)
@@ -270,13 +273,30 @@ class March {
 
   void settle(const Hole& hole) {
     const bool closed = hole.marked.size() == hole.triangles && all_edges_full(hole.marked) &&
-                        std::abs(hole.area - hole.marked_area) <= 1e-9 * hole.area;
+                        std::abs(hole.area - hole.marked_area) <= 1e-9 * hole.area && !flatter(hole);
     if (closed) {
       result_.triangles.insert(result_.triangles.end(), hole.marked.begin(), hole.marked.end());
       return;
     }
     result_.complete = false;
     for (TriangleId t : hole.old) result_.triangles.push_back(mesh_.triangle(t).node);
+  }
+
+  /// Would the hole get a triangle as flat as an ear cut from a polygon of a curve's segments, where it has none now?
+  /// The facets of a tetrahedralization that is no longer Delaunay, after flips, can be such.
+  bool flatter(const Hole& hole) const {
+    double now = kFlatSine, then = kFlatSine;
+    for (TriangleId t : hole.old) now = std::min(now, least_sine(mesh_.triangle(t).node));
+    for (const NodeTriple& n : hole.marked) then = std::min(then, least_sine(n));
+    return then < 0.5 * now;
+  }
+
+  /// Of the angles in space.
+  double least_sine(const NodeTriple& n) const {
+    const auto at = [&](std::size_t k) { return conjoint_.vertices().position(mesh_.node(n[k]).vertex); };
+    std::array<double, 3> edges{distance(at(0), at(1)), distance(at(1), at(2)), distance(at(2), at(0))};
+    std::sort(edges.begin(), edges.end());
+    return edges[1] > 0 ? norm(cross(at(1) - at(0), at(2) - at(0))) / (edges[1] * edges[2]) : 0;
   }
 
   bool all_edges_full(const std::vector<NodeTriple>& triangles) const {

@@ -28,6 +28,8 @@ const char* reason_name(SizeReason reason) {
       return "chord_height";
     case SizeReason::gap:
       return "gap";
+    case SizeReason::narrow_face:
+      return "narrow_face";
     case SizeReason::edge_length:
       return "edge_length";
     case SizeReason::callback:

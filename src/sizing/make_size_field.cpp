@@ -7,6 +7,7 @@
 #include "sizing/gaps.h"
 #include "sizing/sampling.h"
 #include "sizing/size_field.h"
+#include "sizing/strips.h"
 
 namespace curvetet {
 
@@ -48,6 +49,8 @@ class FieldMaker {
     field.add(sources);
     if (options_.gaps)
       field.add(sizing::gap_sources({model_, options_, field, domains_, face_samples_, edge_samples_}, context_));
+    if (context_.should_stop()) return context_.stop_error("sizing");
+    field.add(sizing::strip_sources({model_, options_, field, edge_samples_}, context_));
     if (context_.should_stop()) return context_.stop_error("sizing");
     field.add(short_edge_sources(field));
     return field;

@@ -33,7 +33,16 @@ struct SizingOptions {
   std::function<double(Vec3)> callback;  ///< may be called from several threads
 };
 
-enum class SizeReason : std::uint8_t { asked, curvature, chord_height, gap, edge_length, callback, outer_loop };
+enum class SizeReason : std::uint8_t {
+  asked,
+  curvature,
+  chord_height,
+  gap,
+  narrow_face,
+  edge_length,
+  callback,
+  outer_loop
+};
 
 /// A point where the size is smaller than asked, and why.
 struct SizeSource {

@@ -1,7 +1,7 @@
-// Improvement in rounds: reconnect, smooth, and again while it pays; then exchange locks of flat tets, then give a
-// vertex to the tets that are still bad, and start over. All work is on tets below a goal, so a good mesh costs one
-// look at each tet. Every change is judged by the worst tet of what it replaces (Freitag and Ollivier-Gooch 1997;
-// Klingner and Shewchuk 2007).
+// Improvement in rounds: reconnect, smooth, and again while it pays; then take out vertices where that helps, exchange
+// locks of flat tets, give a vertex to the tets that are still bad, and start over. All work is on tets below a goal,
+// so a good mesh costs one look at each tet. Every change is judged by the worst tet of what it replaces (Freitag and
+// Ollivier-Gooch 1997; Klingner and Shewchuk 2007).
 //
 // Rejected: a queue ordered by quality. Sweeps in slot order find nearly the same changes, need no bookkeeping, and
 // touch memory in order. Sliver exudation by weights was not taken either: it works with what a weighted Delaunay
@@ -13,11 +13,13 @@
 #include <numbers>
 #include <vector>
 
+#include "geometry/frame.h"
 #include "predicates/predicates.h"
 #include "spatial/flips.h"
 #include "volume/relock.h"
 #include "volume/shape.h"
 #include "volume/vertex_insertion.h"
+#include "volume/vertex_removal.h"
 
 namespace curvetet {
 
@@ -26,8 +28,13 @@ namespace {
 constexpr double kDegree = std::numbers::pi / 180;
 /// Reconnecting and smoothing is repeated at most this often in a round, on ever fewer tets.
 constexpr int kSweeps = 10;
-/// A new vertex must raise the least sine of the worst tet by this much (two degrees): a vertex for nothing is a cost.
-constexpr double kInsertionGain = 0.035;
+/// A vertex more or less must raise the least sine of the worst tet by this much (two degrees): a vertex for nothing is
+/// a cost, and one less makes tets larger.
+constexpr double kVertexGain = 0.035;
+/// Degrees: what smoothing beside needles is after, and what it must leave to the tets over needles.
+constexpr double kNeedleGoal = 5;
+constexpr double kLeastOverNeedle = 1;
+constexpr int kNeedleSweeps = 5;
 /// Attempts to insert that may fail in a round, besides two for each that succeeded: where a body is thinner than its
 /// facets are long, bad tets are the body's fault and every attempt fails.
 constexpr std::size_t kFailedInsertions = 100;
@@ -41,17 +48,20 @@ class Improvement {
         options_(options),
         context_(context),
         insertion_(mesh, vertices),
+        removal_(mesh),
         goal_(std::sin(options.goal * kDegree)) {}
 
   Result<ImproveResult> run() {
     result_.worst_before = worst_degrees();
     for (int round = 0; round < options_.rounds; ++round) {
       reconnect_and_smooth();
-      const std::size_t changed = exchange_locks() + (options_.insert_vertices ? insert_vertices() : 0);
+      const std::size_t removed = remove_vertices();
+      const std::size_t changed = removed + exchange_locks() + (options_.insert_vertices ? insert_vertices() : 0);
       if (stopped_) return context_.stop_error("improvement");
       if (changed == 0) break;
     }
     reconnect_and_smooth();
+    smooth_beside_needles();
     if (stopped_) return context_.stop_error("improvement");
     result_.worst_after = worst_degrees();
     return result_;
@@ -105,6 +115,7 @@ class Improvement {
     std::sort(touched_.begin(), touched_.end());
     touched_.erase(std::unique(touched_.begin(), touched_.end()), touched_.end());
     for (VertexId v : touched_) {
+      if (!mesh_.contains(v)) continue;
       mesh_.star(v, star_);
       for (TetId t : star_) {
         if (is_inside(t) && quality(t) < goal_) bad_.push_back(t);
@@ -139,7 +150,8 @@ class Improvement {
     return false;
   }
 
-  void smooth() {
+  /// The interior vertices of the bad tets that are left.
+  void collect_movable() {
     movable_.clear();
     for (TetId t : bad_) {
       if (!is_inside(t) || quality(t) >= goal_) continue;
@@ -149,6 +161,10 @@ class Improvement {
     }
     std::sort(movable_.begin(), movable_.end());
     movable_.erase(std::unique(movable_.begin(), movable_.end()), movable_.end());
+  }
+
+  void smooth() {
+    collect_movable();
     for (std::size_t k = 0; k < movable_.size() && !should_stop(k); ++k) {
       if (!smooth(movable_[k])) continue;
       touched_.push_back(movable_[k]);
@@ -156,7 +172,8 @@ class Improvement {
     }
   }
 
-  bool smooth(VertexId v) {
+  /// The facets that an interior vertex sees; false if one of its own is locked.
+  bool collect_facets(VertexId v) {
     mesh_.star(v, star_);
     facets_.clear();
     for (TetId t : star_) {
@@ -168,16 +185,91 @@ class Improvement {
       const auto f = complex_.facet_vertices({t, i});
       facets_.push_back({vertices_.position(f[0]), vertices_.position(f[1]), vertices_.position(f[2])});
     }
+    return true;
+  }
+
+  bool smooth(VertexId v) {
+    if (!collect_facets(v)) return false;
     const Vec3 here = vertices_.position(v);
     const double now = worst_in_star(facets_, here);
     if (now >= goal_) return false;
     const Vec3 there = optimiser_.optimise(facets_, here);
     if (!(worst_in_star(facets_, there) > now * (1 + 1e-3))) return false;
+    return move(v, there);
+  }
+
+  bool move(VertexId v, Vec3 there) {
     for (const auto& f : facets_) {
       if (orient3d(f[0], f[1], f[2], there) <= 0) return false;
     }
     vertices_.move(v, there);
     return true;
+  }
+
+  /// A needle, over which no tet is good, keeps the worst tet of a star bad wherever the vertex is; to make the best of
+  /// it, smoothing lets the others go. Here they are made up for it.
+  void smooth_beside_needles() {
+    for (int sweep = 0; sweep < kNeedleSweeps && !stopped_; ++sweep) {
+      collect_bad(std::sin(kNeedleGoal * kDegree));
+      collect_movable();
+      bool moved = false;
+      for (std::size_t k = 0; k < movable_.size() && !should_stop(k); ++k)
+        moved = smooth_beside_needles(movable_[k]) || moved;
+      if (!moved) return;
+    }
+  }
+
+  bool smooth_beside_needles(VertexId v) {
+    if (!collect_facets(v)) return false;
+    const auto first = std::partition(facets_.begin(), facets_.end(), [](const auto& f) { return !is_needle(f); });
+    const StarFacets others(facets_.begin(), first), needles(first, facets_.end());
+    if (others.empty() || needles.empty()) return false;
+    const Vec3 here = vertices_.position(v);
+    const double now = worst_in_star(others, here);
+    const double least = std::min(worst_in_star(needles, here), std::sin(kLeastOverNeedle * kDegree));
+    const std::size_t bad = count_bad(here);
+    Vec3 there = optimiser_.optimise(others, here);
+    for (int halving = 0; halving < 4; ++halving, there = snap(0.5 * (here + there))) {
+      if (worst_in_star(others, there) > now * (1 + 1e-3) && worst_in_star(needles, there) >= least &&
+          count_bad(there) <= bad && move(v, there)) {
+        ++result_.moves;
+        return true;
+      }
+    }
+    return false;
+  }
+
+  std::size_t count_bad(Vec3 p) const {
+    return static_cast<std::size_t>(std::count_if(facets_.begin(), facets_.end(), [&](const auto& f) {
+      return least_sine(f[0], f[1], f[2], p) < std::sin(kNeedleGoal * kDegree);
+    }));
+  }
+
+  /// Has the triangle an angle below the goal? Its sine is twice the area over the product of the longer edges.
+  static bool is_needle(const std::array<Vec3, 3>& f) {
+    const double area = norm(cross(f[1] - f[0], f[2] - f[0]));
+    std::array<double, 3> edges{distance(f[0], f[1]), distance(f[1], f[2]), distance(f[2], f[0])};
+    std::sort(edges.begin(), edges.end());
+    return area < std::sin(kNeedleGoal * kDegree) * edges[1] * edges[2];
+  }
+
+  std::size_t remove_vertices() {
+    const double goal = std::sin(options_.insertion_goal * kDegree);
+    std::size_t removed = 0;
+    collect_bad(goal);
+    for (std::size_t k = 0; k < bad_.size() && !should_stop(k); ++k) {
+      if (is_inside(bad_[k]) && quality(bad_[k]) < goal) removed += remove_vertex_of(bad_[k]) ? 1 : 0;
+    }
+    result_.removed += removed;
+    return removed;
+  }
+
+  bool remove_vertex_of(TetId t) {
+    const double better = quality(t) + kVertexGain;
+    const TetComplex::Vertices corners = complex_.vertices(t);
+    return std::any_of(corners.begin(), corners.end(), [&](VertexId v) {
+      return vertices_.owner(v).kind == OwnerKind::interior && removal_.remove(v, better);
+    });
   }
 
   std::size_t exchange_locks() {
@@ -203,7 +295,7 @@ class Improvement {
          ++k) {
       const TetId t = order[k].second;
       if (!is_inside(t) || quality(t) >= goal) continue;
-      ++(insertion_.mend(t, quality(t) + kInsertionGain) ? changed : failed);
+      ++(insertion_.mend(t, quality(t) + kVertexGain) ? changed : failed);
     }
     result_.inserted += changed;
     return changed;
@@ -215,6 +307,7 @@ class Improvement {
   const ImproveOptions& options_;
   Context& context_;
   VertexInsertion insertion_;
+  VertexRemoval removal_;
   double goal_;
   bool stopped_ = false;
   std::vector<TetId> bad_, star_;

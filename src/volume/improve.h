@@ -22,7 +22,7 @@ struct ImproveOptions {
 };
 
 struct ImproveResult {
-  std::size_t edge_removals = 0, face_removals = 0, moves = 0, inserted = 0;
+  std::size_t edge_removals = 0, face_removals = 0, moves = 0, inserted = 0, removed = 0;
   std::size_t relocks = 0;  ///< pairs of locked facets exchanged for the other diagonal
   double worst_before = 0;  ///< degrees, the arc sine of the least sine of a dihedral angle
   double worst_after = 0;
@@ -32,7 +32,8 @@ struct ImproveResult {
 ///
 /// Before: every facet between two regions is locked; the store is that of the mesh.
 /// After: every tet is exactly positive; the worst tet is no worse than before, and so it is for every single change in
-/// what it replaced. Boundary vertices have not moved, kept segments are there. Locked facets are unchanged, but for
+/// what it replaced, but for tets over needles (triangles with an angle below five degrees): these may lose down to one
+/// degree for the others' sake. Boundary vertices have not moved, kept segments are there. Locked facets are unchanged, but for
 /// the exchange of two locked facets of one CAD face for the other two facets of a flat tet, where `facet_allowed`
 /// agrees: that tet then belongs to what was on the other side. Ends: rounds and sweeps are bounded, and each change
 /// raises the worst tet of what it replaces. An error only if the context asks to stop; the mesh is then valid.

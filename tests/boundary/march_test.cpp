@@ -11,6 +11,7 @@
 #include <set>
 
 #include "predicates/predicates.h"
+#include "spatial/flips.h"
 #include "support/bodies.h"
 #include "support/run_boundary.h"
 
@@ -160,6 +161,41 @@ TEST(March, TakesNothingThatIsLockedForAnotherFace) {
     }
   }
   EXPECT_GT(tried, 0u) << "or the test says nothing";
+}
+
+double least_sine(const BoundaryRun& run, const FaceMesh& mesh, const NodeTriple& n) {
+  const auto at = [&](std::size_t k) { return run.vertices.position(mesh.node(n[k]).vertex); };
+  double least = 1;
+  for (std::size_t k = 0; k < 3; ++k) {
+    const Vec3 a = at((k + 1) % 3) - at(k), b = at((k + 2) % 3) - at(k);
+    least = std::min(least, norm(cross(a, b)) / (norm(a) * norm(b)));
+  }
+  return least;
+}
+
+// Three neighbours on a finely divided circle are a flat ear of the disk, which flips in space may have made a facet.
+TEST(March, TakesNoFlatEarWhereThereWasNone) {
+  const Model model = make_tube(2, 1.95, 0.05);
+  const auto run = tetrahedralized(model, 0.015);
+  ASSERT_FALSE(HasFailure());
+  for (int k = 0; k < 8; ++k)  // room around the hull, so that its edges can be flipped
+    run->tets->insert(run->vertices.add({k & 1 ? 0.875 : -0.875, k & 2 ? 0.875 : -0.875, k & 4 ? 0.875 : -0.875},
+                                        Owner::of(SolidId(0)), {}, Origin::interior));
+  std::size_t ears = 0;
+  for (std::size_t f = 0; f < model.faces.size(); ++f) {
+    const FaceMesh& mesh = run->boundary.faces[FaceId(f)];
+    for (const CurveMesh& curve : run->boundary.curves) {
+      for (std::size_t i = 0; i + 2 < curve.vertices.size() && ears < 10; i += 2) {
+        const VertexId a = curve.vertices[i], b = curve.vertices[i + 1], c = curve.vertices[i + 2];
+        if (mesh.nodes_of(a).size() != 1 || mesh.nodes_of(b).size() != 1 || mesh.nodes_of(c).size() != 1) continue;
+        if (!recover_edge_by_flips(*run->tets, a, c) || !recover_facet_by_flips(*run->tets, a, b, c)) continue;
+        ears += march_face(*run->conjoint, FaceId(f)).missing.empty() ? 0 : 1;
+      }
+    }
+    for (const NodeTriple& n : march_face(*run->conjoint, FaceId(f)).triangles)
+      EXPECT_GT(least_sine(*run, mesh, n), 0.0087);
+  }
+  EXPECT_GT(ears, 0u) << "or the test says nothing";
 }
 
 }  // namespace

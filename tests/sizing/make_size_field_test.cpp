@@ -168,8 +168,8 @@ TEST(Gaps, PlateOfAnyThinnessDemandsNothing) {
     SizingOptions options = plain(model, 2);
     options.gaps = true;
     const Sized plate = sized(model, options);
-    // Its short edges may grade from their own length, but nothing is due to a gap.
-    for (const SizeSource& source : plate.field.sources()) EXPECT_EQ(source.reason, SizeReason::edge_length);
+    // Its short edges may grade from their own length and its sides be strips, but nothing is due to a gap.
+    for (const SizeSource& source : plate.field.sources()) EXPECT_NE(source.reason, SizeReason::gap);
     EXPECT_EQ(plate.at({5, 5, 0}), 2);
   }
 }
@@ -321,6 +321,36 @@ TEST(MakeSizeField, StopsWhenCancelled) {
   SizingOptions options;
   options.size = 0.1;
   EXPECT_EQ(make_size_field(model, options, context).error().code, ErrorCode::cancelled);
+}
+
+/// A plate's size, without what its curvature and gaps ask for. Its sides are strips.
+Sized plate(const Model& model) {
+  SizingOptions options = plain(model, 5);
+  options.curvature = 0;
+  return sized(model, options);
+}
+
+bool any_narrow_face(const Sized& body) {
+  return std::any_of(body.field.sources().begin(), body.field.sources().end(),
+                     [](const SizeSource& source) { return source.reason == SizeReason::narrow_face; });
+}
+
+TEST(StripSizes, BesideANarrowFaceElementsAreOfFiftyWidths) {
+  const Model model = test::make_box(40, 40, 0.05);
+  const Sized box = plate(model);
+  for (int i = 10; i <= 30; ++i)  // away from the short edges at the corners
+    for (double z : {0.0, 0.05}) expect_size(box.at({1.0 * i, 0, z}), 2.5);
+  EXPECT_DOUBLE_EQ(box.at({20, 20, 0}), 5);
+  EXPECT_TRUE(any_narrow_face(box));
+}
+
+TEST(StripSizes, NeitherAWideFaceNorASliverDemandsAnything) {
+  for (double thickness : {0.2, 0.01}) {
+    const Model model = test::make_box(40, 40, thickness);
+    const Sized box = plate(model);
+    EXPECT_DOUBLE_EQ(box.at({20, 0, 0}), 5) << "thickness " << thickness;
+    EXPECT_FALSE(any_narrow_face(box)) << "thickness " << thickness;
+  }
 }
 
 }  // namespace

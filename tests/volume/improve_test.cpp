@@ -7,6 +7,7 @@
 #include "volume/convex_bodies.h"
 #include "volume/refine.h"
 #include "volume/shape.h"
+#include "volume/vertex_removal.h"
 
 namespace curvetet::test {
 namespace {
@@ -109,6 +110,70 @@ TEST(Improve, ExchangesLocksOfFlatTetsWhereAllowed) {
   EXPECT_GT(asked, 0U);
   EXPECT_GT(result.value().relocks, 0U);
   EXPECT_EQ(body->mesh->complex().locked_count(), locked);
+}
+
+/// A box with a flat edge: a strip that is a hundredth of the lattice wide.
+std::unique_ptr<Body> chamfered_box(double h) {
+  std::vector<Vec3> points;
+  const int n = static_cast<int>(std::lround(0.8 / h));
+  for (int i = 0; i <= n; ++i)
+    for (int j = 0; j <= n; ++j)
+      for (int k = 0; k <= n; ++k) {
+        if (i > 0 && i < n && j > 0 && j < n && k > 0 && k < n) continue;
+        const Vec3 p{0.8 * i / n - 0.4, 0.8 * j / n - 0.4, 0.8 * k / n - 0.4};
+        if (i < n || k < n) {
+          points.push_back(p);
+          continue;
+        }
+        points.push_back(p - Vec3{0.01 * h, 0, 0});
+        points.push_back(p - Vec3{0, 0, 0.01 * h});
+      }
+  return convex_body(points, [](Vec3, Vec3, Vec3) { return FaceId(0); });
+}
+
+double shortest_edge(const std::array<Vec3, 4>& p) {
+  double shortest = std::numeric_limits<double>::infinity();
+  for (std::size_t i = 0; i < 4; ++i)
+    for (std::size_t j = 0; j < i; ++j) shortest = std::min(shortest, distance(p[i], p[j]));
+  return shortest;
+}
+
+// The tets over the strip are bad whatever is done; the others need not be.
+TEST(Improve, OnlyTetsOverNeedlesStayBadBesideAStrip) {
+  const double h = 0.15;
+  const auto body = refined(chamfered_box(h), h);
+  improve_and_check(*body);
+  const TetComplex& complex = body->mesh->complex();
+  std::size_t over_needles = 0, others = 0;
+  for (std::size_t k = 0; k < complex.slots(); ++k) {
+    const TetId t(k);
+    if (!complex.is_alive(t) || complex.is_ghost(t) || complex.region(t) == 0) continue;
+    std::array<Vec3, 4> p;
+    for (std::size_t i = 0; i < 4; ++i) p[i] = body->store.position(complex.vertices(t)[i]);
+    if (smallest_dihedral(p[0], p[1], p[2], p[3]) < 5) ++(shortest_edge(p) < 0.5 * h ? over_needles : others);
+  }
+  EXPECT_GT(over_needles, 0U);
+  EXPECT_EQ(others, 0U);
+}
+
+TEST(VertexRemoval, LeavesAValidMeshWithoutTheVertex) {
+  const auto body = refined(ball_body(0.4, 0.1), 0.1);
+  const auto locked = locked_facets(body->mesh->complex());
+  const double volume = sixfold_volume(*body->mesh);
+  VertexRemoval removal(*body->mesh);
+  std::size_t removed = 0;
+  for (std::size_t v = 0; v < body->store.size(); ++v) {
+    if (body->store.owner(VertexId(v)).kind != OwnerKind::interior || !body->mesh->contains(VertexId(v))) continue;
+    EXPECT_FALSE(removal.remove(VertexId(v), 0.99)) << "no tet is as good as that";
+    EXPECT_TRUE(body->mesh->contains(VertexId(v)));
+    if (!removal.remove(VertexId(v), 0.01)) continue;
+    ++removed;
+    EXPECT_FALSE(body->mesh->contains(VertexId(v)));
+    ASSERT_EQ(defects(*body->mesh), "");
+  }
+  EXPECT_GT(removed, 0U);
+  EXPECT_NEAR(sixfold_volume(*body->mesh), volume, 1e-12);
+  EXPECT_EQ(locked_facets(body->mesh->complex()), locked);
 }
 
 TEST(Improve, StopsWhenAsked) {
