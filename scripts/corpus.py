@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
 """Meshes a list of CAD bodies at several sizes and says what became of each: nothing is skipped, no failure is hidden.
 
-Every run is a process of its own with a limit of time and memory. The size is the bounding box's diagonal over the
-divisor; the diagonal comes from manifest.jsonl beside the list, else from `curvetet info --json`. A mesh counts as valid
+`curvetet batch` meshes, each body in a process of its own with limits of time and memory, at its diagonal over the divisor;
+a run that was ended while it meshed goes on where it was. This script then has the meshes judged and compared. A mesh counts as valid
 only if curvetet exits with 0, `curvetet check` against the CAD passes and, where an independent judge is given, the judge
 passes too. The judge is any program called as `JUDGE CAD MESH --json OUT` that exits with 0 for a valid mesh, 1 for an
 invalid one and 2 when it could not judge.
@@ -31,6 +31,7 @@ def parse_arguments():
     parser.add_argument("--divide", default="10,20", help="divisors of the diagonal, separated by commas")
     parser.add_argument("--curvature", type=float, default=12)
     parser.add_argument("--jobs", type=int, default=2)
+    parser.add_argument("--threads", type=int, default=0, help="of each run; 0: all cores")
     parser.add_argument("--time-limit", type=float, default=60, help="seconds for each run of each program")
     parser.add_argument("--memory-limit", type=float, default=4, help="GiB of address space for each run; 0: none")
     parser.add_argument("--curvetet", required=True, type=pathlib.Path)
@@ -130,6 +131,46 @@ class Corpus:
             return False, verdict.get("failed", ["unnamed"]), verdict
         return None, ["timed out" if code is None else f"could not judge: {err.strip()[:100]}"], verdict
 
+    def mesh_all(self, bodies, divisor):
+        """What `curvetet batch` made of the bodies, by name."""
+        folder = self.a.out / f"at_{divisor:g}"
+        folder.mkdir(parents=True, exist_ok=True)
+        names = {str((self.root / body).resolve()): body for body in bodies}
+        (folder / "list.txt").write_text("".join(f"{path}\n" for path in names))
+        # Once meshes are being judged they are moved and removed: such a run starts over.
+        restart = ["--restart"] if (self.a.out / "results.jsonl").exists() else []
+        command = [self.a.curvetet, "batch", folder / "list.txt", "--out", folder, "--jobs", self.a.jobs, "--time-limit",
+                   self.a.time_limit, "--memory-limit", f"{self.a.memory_limit:g}G", *restart, "--", "--size", f"D/{divisor:g}", "--unit", "mm",
+                   "--threads", self.a.threads, "--curvature", self.a.curvature, *self.a.cad_options.split(), *self.a.options.split()]
+        process = subprocess.Popen([str(c) for c in command], stdout=subprocess.DEVNULL, start_new_session=True)
+        LIVE.add(process.pid)
+        process.wait()
+        LIVE.discard(process.pid)
+        if process.returncode not in (0, 5):
+            sys.exit(f"curvetet batch ended with {process.returncode}")
+        made = {}
+        for line in (folder / "results.jsonl").read_text().splitlines():
+            row = json.loads(line)
+            row["mesh"], row["report"] = folder / row["mesh"], folder / row["report"]
+            made[names[row["body"]]] = row
+        return made
+
+    def made_by_batch(self, body, divisor, made):
+        """The row of a body that was meshed already."""
+        name = f"{pathlib.Path(body).name}.{divisor:g}"
+        row = {"body": body, "divide": divisor, "status": "failed", "cause": "", "size": made["size"], "seconds": made["seconds"],
+               "exit": made["exit"]}
+        mesh, report = self.a.out / f"{name}.msh", self.a.out / f"{name}.report.json"
+        for old, new in ((made["mesh"], mesh), (made["report"], report)):
+            if old.is_file():
+                old.replace(new)
+        self.take_report(row, read_json(report) or {})
+        if made["status"] == "valid" and mesh.is_file():
+            self.check(body, mesh, name, row)
+        else:
+            row["cause"] = f"mesh: {made['cause']}: {made['message'][:160]}"
+        return self.finish(body, mesh, name, row)
+
     def one(self, body, divisor):
         name = f"{pathlib.Path(body).name}.{divisor:g}"
         row = {"body": body, "divide": divisor, "status": "failed", "cause": ""}
@@ -151,15 +192,22 @@ class Corpus:
         code, _, err, row["seconds"] = run(command, 1.2 * self.a.time_limit + 5, self.a.memory_limit)
         document = read_json(report) or {}
         row["exit"] = code
-        row["counts"] = document.get("counts", {})
-        row["rounds"] = document.get("rounds")
-        row.update(fineness(document))
+        self.take_report(row, document)
         if code != 0 or not mesh.is_file():
             row["cause"] = describe_failure("mesh", code, document, err)
         else:
             self.check(body, mesh, name, row)
-        if self.a.gmsh:
-            self.compare(body, size, name, row)
+        return self.finish(body, mesh, name, row)
+
+    @staticmethod
+    def take_report(row, document):
+        row["counts"] = document.get("counts", {})
+        row["rounds"] = document.get("rounds")
+        row.update(fineness(document))
+
+    def finish(self, body, mesh, name, row):
+        if self.a.gmsh and row["size"] > 0:
+            self.compare(body, row["size"], name, row)
         if row["status"] == "valid" and not self.a.keep:
             mesh.unlink(missing_ok=True)
         return row
@@ -309,11 +357,12 @@ def main():
     divisors = [float(d) for d in arguments.divide.split(",")]
     corpus = Corpus(arguments)
     tasks = [(body, divisor) for body in bodies for divisor in divisors]
+    made = {divisor: corpus.mesh_all(bodies, divisor) for divisor in divisors}
     rows = []
     with open(arguments.out / "results.jsonl", "w") as results, \
             concurrent.futures.ThreadPoolExecutor(max_workers=arguments.jobs) as pool:
         # In the order of the list, each as soon as those before it are done.
-        for row in pool.map(lambda task: corpus.one(*task), tasks):
+        for row in pool.map(lambda task: corpus.made_by_batch(*task, made[task[1]][task[0]]), tasks):
             rows.append(row)
             results.write(json.dumps(row) + "\n")
             results.flush()

@@ -28,6 +28,7 @@ Examples:
   curvetet info bracket.step
   curvetet check bracket.msh bracket.step
   curvetet picture bracket.msh -o bracket.png --cut x=0.5
+  curvetet batch parts/ --out meshes --jobs 4 --time-limit 120 -- --size D/20
 
 Exit codes:
   0   done, and the mesh is valid
@@ -41,6 +42,7 @@ constexpr std::size_t kLeastMemory = std::size_t{64} << 20U;
 
 /// What the options of `mesh` say before they are checked together.
 struct RawMesh {
+  std::string size;
   std::vector<std::string> outputs, face_sizes, edge_sizes, solid_sizes;
   std::string format, recovery = "conjoint";
   bool parametric = false, no_gaps = false, no_refine = false, no_improve = false, no_isolate = false;
@@ -112,7 +114,21 @@ void refuse_collisions(const MeshCommand& command) {
   }
 }
 
+void read_size(const std::string& text, Options& options) {
+  if (text.empty()) return;
+  double value = 0;
+  const bool part = text.rfind("D/", 0) == 0;
+  if (!read_number(std::string_view(text).substr(part ? 2 : 0), value))
+    refuse(fmt::format("--size takes a length, or a part of the diagonal as D/20, not '{}'", text));
+  if (part) {
+    options.size_divisor = value;
+  } else {
+    options.size = value;
+  }
+}
+
 void finish_mesh(const RawMesh& raw, MeshCommand& command) {
+  read_size(raw.size, command.options);
   bool format_used = raw.format.empty();
   for (const std::string& path : raw.outputs) {
     command.outputs.push_back({path, write_options(path, raw)});
@@ -170,7 +186,11 @@ void describe_sizes(CLI::App& app, RawMesh& raw, Options& options) {
   const auto length = [&](const char* name, std::optional<double>& value, const char* help) {
     app.add_option(name, value, help)->check(not_empty())->type_name("LENGTH")->group(group);
   };
-  length("--size", options.size, "largest edge length; default: a tenth of the body's diagonal");
+  app.add_option("--size", raw.size,
+                 "largest edge length; D/20: a twentieth of the body's diagonal, likewise any part; default: D/10")
+      ->check(not_empty())
+      ->type_name("LENGTH")
+      ->group(group);
   length("--min-size", options.min_size,
          "floor of derived sizes; default: a thousandth of the size, a fiftieth for the curvature of free forms");
   app.add_option("--curvature", options.curvature, "elements per full turn of a curve or surface; 0: off")
@@ -303,6 +323,58 @@ CLI::App* describe_picture(CLI::App& app, RawPicture& raw, PictureCommand& comma
   return picture;
 }
 
+CLI::App* describe_batch(CLI::App& app, BatchCommand& command) {
+  CLI::App* batch = app.add_subcommand(
+      "batch",
+      "Mesh many bodies, each in a process of its own; goes on where an earlier one ended. Exit code 5 if any failed");
+  batch->add_option("SOURCE", command.source, "folder of CAD files, or a list: a path a line, relative to the list")
+      ->required()
+      ->type_name("LIST|DIR");
+  batch
+      ->add_option("--out", command.out,
+                   "folder for meshes, reports, results.jsonl (a line for each body) and summary.json")
+      ->required()
+      ->type_name("DIR")
+      ->check(not_empty());
+  batch->add_option("--jobs", command.jobs, "bodies at a time; 0: as many as there are cores")
+      ->type_name("NUMBER")
+      ->check(CLI::Range(0, 4096))
+      ->capture_default_str();
+  batch->add_option("--time-limit", command.time_limit, "for each body")
+      ->type_name("SECONDS")
+      ->check(CLI::PositiveNumber)
+      ->capture_default_str();
+  batch->add_option("--memory-limit", command.memory_limit, "for each body, as 800M or 4G; default: none")
+      ->transform(CLI::AsSizeValue(false))
+      ->option_text("BYTES");
+  batch->add_option("--format", command.format, "ending of the meshes: msh, msh2, vtu, mesh, stl")
+      ->check(CLI::IsMember({"msh", "msh2", "vtu", "mesh", "stl"}).description(""))
+      ->type_name("FORMAT")
+      ->capture_default_str();
+  batch->add_flag("--restart", command.restart, "forget what is done already in the folder");
+  batch->add_flag("-q,--quiet", command.quiet, "only the summary and errors")->option_text(" ");
+  batch->add_option("MESH_OPTIONS", command.mesh_options, "after --: options of mesh for all bodies")->type_name("...");
+  return batch;
+}
+
+/// Each body's program would refuse them; better once, before any work.
+void check_mesh_options(const BatchCommand& command) {
+  for (const std::string& option : command.mesh_options) {
+    const std::string word = option.substr(0, option.find('='));
+    for (const char* own : {"-o", "--output", "--report", "--time-limit", "--memory-limit", "-h", "--help"})
+      if (word == own) refuse(word + " cannot be handed to the bodies of a batch");
+  }
+  CLI::App app;
+  RawMesh raw;
+  MeshCommand mesh;
+  describe_mesh(app, raw, mesh);
+  std::vector<std::string> words{"mesh", "INPUT", "-o", "OUTPUT." + command.format};
+  words.insert(words.end(), command.mesh_options.begin(), command.mesh_options.end());
+  std::reverse(words.begin(), words.end());  // as CLI11 takes them
+  app.parse(words);
+  finish_mesh(raw, mesh);
+}
+
 }  // namespace
 
 Arguments parse(int argc, char** argv) {
@@ -316,16 +388,19 @@ Arguments parse(int argc, char** argv) {
   InfoCommand info;
   CheckCommand check;
   PictureCommand picture;
+  BatchCommand batch;
   const CLI::App* mesh_app = describe_mesh(app, raw_mesh, mesh);
   const CLI::App* info_app = describe_info(app, info);
   const CLI::App* check_app = describe_check(app, check);
   const CLI::App* picture_app = describe_picture(app, raw_picture, picture);
+  const CLI::App* batch_app = describe_batch(app, batch);
   for (CLI::App* command : app.get_subcommands({})) command->footer(kFooter);
   Arguments arguments;
   try {
     app.parse(argc, argv);
     if (mesh_app->parsed()) finish_mesh(raw_mesh, mesh);
     if (picture_app->parsed()) finish_picture(raw_picture, picture);
+    if (batch_app->parsed()) check_mesh_options(batch);
   } catch (const CLI::ParseError& error) {
     if (error.get_exit_code() == 0) {
       app.exit(error, std::cout, std::cerr);
@@ -339,6 +414,7 @@ Arguments parse(int argc, char** argv) {
   if (info_app->parsed()) arguments.info = std::move(info);
   if (check_app->parsed()) arguments.check = std::move(check);
   if (picture_app->parsed()) arguments.picture = std::move(picture);
+  if (batch_app->parsed()) arguments.batch = std::move(batch);
   return arguments;
 }
 

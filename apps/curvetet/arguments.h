@@ -41,6 +41,18 @@ struct CheckCommand {
   int threads = 0;
 };
 
+/// Many bodies, each by a program of its own.
+struct BatchCommand {
+  std::string source;  ///< a list, or a folder
+  std::string out;
+  int jobs = 1;             ///< at a time; 0: as many as there are cores
+  double time_limit = 600;  ///< seconds for each body
+  std::size_t memory_limit = 0;
+  std::string format = "msh";
+  std::vector<std::string> mesh_options;
+  bool restart = false, quiet = false;
+};
+
 struct PictureCommand {
   std::string mesh, output;
   PictureOptions options;
@@ -53,6 +65,7 @@ struct Arguments {
   std::optional<InfoCommand> info;
   std::optional<CheckCommand> check;
   std::optional<PictureCommand> picture;
+  std::optional<BatchCommand> batch;
   int exit_code = 0;
 };
 

@@ -1,4 +1,4 @@
-// The four commands. Each returns the exit code; exceptions are the caller's business.
+// The five commands. Each returns the exit code; exceptions are the caller's business.
 #pragma once
 
 #include "arguments.h"
@@ -9,5 +9,6 @@ int run_mesh(const MeshCommand& command);
 int run_info(const InfoCommand& command);
 int run_check(const CheckCommand& command);
 int run_picture(const PictureCommand& command);
+int run_batch(const BatchCommand& command);
 
 }  // namespace curvetet::cli

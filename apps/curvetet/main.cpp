@@ -6,6 +6,7 @@
 #include <new>
 
 #include "cad/load.h"
+#include "child.h"
 #include "commands.h"
 
 namespace {
@@ -17,6 +18,7 @@ int run(int argc, char** argv) {
   if (arguments.info) return run_info(*arguments.info);
   if (arguments.check) return run_check(*arguments.check);
   if (arguments.picture) return run_picture(*arguments.picture);
+  if (arguments.batch) return run_batch(*arguments.batch);
   return arguments.exit_code;
 }
 
@@ -31,6 +33,7 @@ int fail(const char* what) {
 
 int main(int argc, char** argv) {
   try {
+    curvetet::cli::end_with_parent();
     // The helper that reads CAD files is this same program, started again by the library.
     if (argc > 1 && std::strcmp(argv[1], "--cad-helper") == 0) return curvetet::run_cad_helper(argc, argv);
     return run(argc, argv);

@@ -24,7 +24,8 @@ enum class RecoveryMode { conjoint, paper };
 enum class Overlaps { refuse, split };
 
 struct Options {
-  std::optional<double> size;  ///< largest edge length; default: a tenth of the body's diagonal
+  std::optional<double> size;  ///< largest edge length; default: the body's diagonal over `size_divisor`
+  double size_divisor = 10;    ///< at least 1
   std::optional<double>
       min_size;           ///< floor of derived sizes; default: size / 1000, size / 50 for curvature of free forms
   double curvature = 12;  ///< elements per full turn; 0: off

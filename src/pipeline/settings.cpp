@@ -17,7 +17,6 @@ bool positive(double x) { return std::isfinite(x) && x > 0; }
 
 // Below this share of the diagonal a size asks for more elements than any machine holds.
 constexpr double kSmallestShare = 1e-5;
-constexpr double kDefaultShare = 0.1;
 constexpr double kFloorShare = 1.0 / 256;
 constexpr double kFreeFormFloorShare = 1.0 / 50;
 
@@ -64,6 +63,8 @@ std::optional<double> millimetres(const std::string& unit) {
 
 Status check_options(const Options& o) {
   if (o.size && !positive(*o.size)) return bad(fmt::format("size must be a positive length, not {}", *o.size));
+  if (!(std::isfinite(o.size_divisor) && o.size_divisor >= 1))
+    return bad(fmt::format("the diagonal cannot be divided by {}: at least 1", o.size_divisor));
   if (o.min_size && !positive(*o.min_size))
     return bad(fmt::format("min-size must be a positive length, not {}", *o.min_size));
   if (o.size && o.min_size && *o.min_size > *o.size) return bad("min-size is larger than size");
@@ -94,10 +95,9 @@ Result<Settings> resolve(const Options& options, const Model& model) {
   s.unit_scale = millimetres(model.unit).value_or(1) / millimetres(s.unit).value_or(1);
   const auto working = [&](double length) { return model.frame.length_to_working(length / s.unit_scale); };
   const double diagonal = model.diagonal();
-  s.size = options.size ? working(*options.size) : kDefaultShare * diagonal;
+  s.size = options.size ? working(*options.size) : diagonal / options.size_divisor;
   if (s.size < kSmallestShare * diagonal)
-    return bad(fmt::format("size {} is below {} of the body's diagonal", *options.size, kSmallestShare),
-               "ask for a larger size");
+    return bad(fmt::format("the size is below {} of the body's diagonal", kSmallestShare), "ask for a larger size");
   s.size = std::min(s.size, diagonal);
   s.sizing.size = s.size;
   s.sizing.min_size = options.min_size ? std::min(working(*options.min_size), s.size) : 1e-3 * s.size;
@@ -122,7 +122,7 @@ std::string options_json(const Options& o, const Settings& s, const Model& model
   const auto out = [&](double working) { return model.frame.length_to_cad(working) * s.unit_scale; };
   nlohmann::ordered_json j;
   j["size"] = out(s.sizing.size);
-  j["size_is_default"] = !o.size.has_value();
+  j["size_is_default"] = !o.size.has_value() && o.size_divisor == Options().size_divisor;
   j["min_size"] = out(s.sizing.min_size);
   j["free_form_floor"] = out(s.sizing.free_form_floor);
   j["curvature"] = o.curvature;

@@ -8,6 +8,7 @@ import os
 import pathlib
 import pty
 import re
+import resource
 import signal
 import subprocess
 import sys
@@ -55,9 +56,9 @@ class CommandLineTest(unittest.TestCase):
 class Help(CommandLineTest):
     def test_help_and_version(self):
         text = self.expect(0, "--help").stdout
-        for word in ("mesh", "info", "check", "picture", "Exit codes", "Examples"):
+        for word in ("mesh", "info", "check", "picture", "batch", "Exit codes", "Examples"):
             self.assertIn(word, text)
-        for command in ("mesh", "info", "check", "picture"):
+        for command in ("mesh", "info", "check", "picture", "batch"):
             self.assertIn("Examples", self.expect(0, command, "--help").stdout)
         text = self.expect(0, "mesh", "--help").stdout
         for option in ("--size", "--unit", "--recovery", "--face-size", "--time-limit", "LENGTH", "SECONDS"):
@@ -404,6 +405,166 @@ class Stopping(CommandLineTest):
         self.assertEqual(program.wait(timeout=PATIENCE), 0)
         self.assertIn(b"\r[#", shown)
         self.assertTrue(shown.endswith(b"\r\x1b[K"), shown[-80:])
+
+
+class Batch(CommandLineTest):
+    LONG = ["--", "--size", "D/700"]  # minutes for a body
+
+    def setUp(self):
+        super().setUp()
+        self.out = self.folder / "out"
+        self.list = self.folder / "list.txt"
+
+    def name_bodies(self, *bodies):
+        self.list.write_text("# bodies\n" + "".join(f"{body}\n" for body in bodies))
+
+    def rows(self):
+        return [json.loads(line) for line in (self.out / "results.jsonl").read_text().splitlines()]
+
+    def batch(self, code, *arguments, **options):
+        return self.expect(code, "batch", self.list, "--out", self.out, *arguments, **options)
+
+    def start(self, *arguments):
+        return subprocess.Popen([PROGRAM, "batch", str(self.list), "--out", str(self.out), *map(str, arguments)],
+                                stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+
+    def wait_for_rows(self, count):
+        for _ in range(100 * PATIENCE):
+            path = self.out / "results.jsonl"
+            if path.is_file() and len(path.read_text().splitlines()) >= count:
+                return
+            time.sleep(0.01)
+        self.fail("no results")
+
+    def test_a_row_for_each_body_and_a_summary_by_cause(self):
+        (self.folder / "empty.step").write_bytes(b"")
+        self.name_bodies(BODIES / "plate.step", "empty.step", "missing.brep", BODIES / "box.step")
+        said = self.batch(5, "--jobs", 2, "--", "--size", "D/5").stdout
+        self.assertIn("valid 2 of 4", said)
+        rows = {pathlib.Path(row["body"]).name: row for row in self.rows()}
+        self.assertEqual({name: row["cause"] for name, row in rows.items()},
+                         {"plate.step": "", "box.step": "", "empty.step": "empty_file", "missing.brep": "file_not_found"})
+        for name, row in rows.items():
+            self.assertEqual((self.out / row["mesh"]).is_file(), row["status"] == "valid", name)
+            self.assertTrue((self.out / row["report"]).is_file(), name)
+        for name in ("plate.step", "box.step"):
+            self.assertGreater(rows[name]["tets"], 0)
+            self.expect(0, "check", self.out / rows[name]["mesh"], BODIES / name)
+        summary = json.loads((self.out / "summary.json").read_text())
+        self.assertEqual(summary, {"bodies": 4, "done": 4, "valid": 2,
+                                   "failed_by_cause": {"empty_file": 1, "file_not_found": 1}})
+
+    def test_a_folder_is_searched(self):
+        self.list = BODIES
+        said = self.batch(5, "--jobs", 0, "--quiet", "--", "--size", "D/4")
+        self.assertEqual(said.stderr, "")
+        self.assertEqual(sorted(row["body"] for row in self.rows()),
+                         sorted(str(p.relative_to(BODIES)) for p in BODIES.rglob("*")
+                                if p.suffix in (".step", ".stp", ".brep", ".igs", ".iges")))
+
+    def test_goes_on_after_it_was_killed(self):
+        self.name_bodies(BODIES / "box.step", BODIES / "plate.step")
+        first = self.start("--jobs", 1, *self.LONG[:1], "--size", "D/4")
+        self.wait_for_rows(1)
+        first.kill()
+        first.communicate()
+        with open(self.out / "results.jsonl", "a") as results:
+            results.write('{"body": "half a li')  # as a kill may leave it
+        before = self.rows_before_the_half_line()
+        said = self.batch(0, "--jobs", 1, *self.LONG[:1], "--size", "D/4")
+        self.assertIn("done already", said.stderr)
+        self.assertEqual(self.rows()[:len(before)], before)
+        self.assertEqual(sorted(row["body"] for row in self.rows()), sorted(map(str, (BODIES / "box.step", BODIES / "plate.step"))))
+
+    def rows_before_the_half_line(self):
+        return [json.loads(line) for line in (self.out / "results.jsonl").read_text().splitlines()[:-1]]
+
+    def test_bodies_end_with_a_batch_that_is_killed(self):
+        self.name_bodies(BODIES / "plate.step")
+        first = self.start(*self.LONG)
+        marker = str(self.out)
+        programs = lambda: [p for p in pathlib.Path("/proc").glob("[0-9]*/cmdline")
+                            if marker.encode() in self.read(p) and b"mesh" in self.read(p).split(b"\0")]
+        for _ in range(1000):
+            if programs():
+                break
+            time.sleep(0.01)
+        self.assertTrue(programs())
+        first.kill()
+        first.communicate()
+        for _ in range(500):
+            if not programs():
+                break
+            time.sleep(0.01)
+        self.assertEqual(programs(), [])
+
+    @staticmethod
+    def read(path):
+        try:
+            return path.read_bytes()
+        except OSError:
+            return b""
+
+    def test_interrupt_keeps_what_is_done(self):
+        self.name_bodies(BODIES / "empty.step", BODIES / "plate.step")
+        program = self.start("--jobs", 1, *self.LONG)
+        self.wait_for_rows(1)
+        time.sleep(0.3)
+        begin = time.monotonic()
+        program.send_signal(signal.SIGINT)
+        _, said = program.communicate(timeout=PATIENCE)
+        self.assertLess(time.monotonic() - begin, 3)
+        self.assertEqual(program.returncode, 4, said)
+        self.assertEqual(len(self.rows()), 1)
+        self.assertEqual([p.name for p in self.out.iterdir() if "plate" in p.name], [])
+
+    def test_what_hangs_is_ended(self):
+        self.name_bodies(BODIES / "plate.step")
+        self.batch(5, "--time-limit", 1, *self.LONG)
+        self.assertEqual(self.rows()[0]["cause"], "time_limit")
+
+    def test_one_batch_at_a_time(self):
+        self.name_bodies(BODIES / "plate.step")
+        first = self.start(*self.LONG)
+        for _ in range(1000):
+            if (self.out / "results.jsonl").is_file():
+                break
+            time.sleep(0.01)
+        self.assertIn("another batch is at work", self.batch(3, *self.LONG).stderr)
+        first.send_signal(signal.SIGINT)
+        first.communicate(timeout=PATIENCE)
+
+    def test_refused_before_any_work(self):
+        self.name_bodies(BODIES / "box.step")
+        for wrong in (["--", "--weave"], ["--", "--size", "D/x"], ["--", "-o", "x.msh"], ["--", "--report=r.json"],
+                      ["--jobs", "-1"], ["--time-limit", "0"], ["--format", "doc"]):
+            with self.subTest(arguments=wrong):
+                self.batch(2, *wrong)
+                self.assertFalse(self.out.exists())
+        (self.folder / "file").write_text("")
+        self.expect(3, "batch", self.list, "--out", self.folder / "file" / "out")
+        self.expect(3, "batch", self.folder / "none.txt", "--out", self.out)
+        (self.folder / "hollow").mkdir()
+        self.expect(3, "batch", self.folder / "hollow", "--out", self.out)
+
+    def test_other_options_need_another_folder_or_a_restart(self):
+        self.name_bodies(BODIES / "box.step")
+        self.batch(0, "--", "--size", "D/2")
+        self.assertIn("other options", self.batch(2, "--", "--size", "D/3").stderr)
+        self.batch(0, "--restart", "--", "--size", "D/3")
+        self.assertEqual(len(self.rows()), 1)
+
+    def test_a_full_disk_stops_it_and_loses_nothing(self):
+        # No file may grow beyond this: writing a mesh or a row fails as on a full disk.
+        self.name_bodies(BODIES / "box.step", BODIES / "plate.step")
+        limits = lambda: (signal.signal(signal.SIGXFSZ, signal.SIG_IGN),
+                          resource.setrlimit(resource.RLIMIT_FSIZE, (6000, 6000)))
+        self.batch(3, "--", "--size", "D/3", preexec_fn=limits)
+        done = self.rows()
+        self.assertTrue(all(row["status"] == "valid" for row in done))
+        self.batch(0, "--", "--size", "D/3")
+        self.assertEqual(self.rows()[:len(done)], done)
+        self.assertEqual(len(self.rows()), 2)
 
 
 def main():
