@@ -89,7 +89,8 @@ class Cells {
 
 bool enclose_solids(CadBody& body) {
   BOPAlgo_MakerVolume maker;
-  FuseHistory history(body, maker);
+  FuseHistory history(body);
+  history.add(maker);
   const TopTools_IndexedMapOfShape faces = sub_shapes(body.shape, TopAbs_FACE);
   for (int f = 1; f <= faces.Extent(); ++f) maker.AddArgument(history.elementary(faces(f)));
   maker.SetIntersect(true);

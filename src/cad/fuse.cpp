@@ -6,17 +6,27 @@
 
 #include <BOPAlgo_Builder.hxx>
 #include <BRepBndLib.hxx>
+#include <BRepGProp.hxx>
 #include <BRep_Builder.hxx>
 #include <Bnd_Box.hxx>
+#include <GProp_GProps.hxx>
 #include <TopExp_Explorer.hxx>
 #include <TopoDS_Compound.hxx>
+#include <algorithm>
 #include <cmath>
+#include <deque>
+#include <gp_Pnt.hxx>
+#include <vector>
 
 #include "cad/history.h"
+#include "cad/occt_geometry.h"
+#include "cad/overlap.h"
 
 namespace curvetet {
 namespace {
 
+/// Solids that are fused at once.
+constexpr std::size_t kGroup = 20;
 constexpr double kVolume = 1e-4;  ///< relative change of a solid's volume that fusing may make
 
 struct FaceBox {
@@ -45,20 +55,15 @@ bool may_touch(const TopTools_IndexedMapOfShape& solids) {
 
 class Fuse {
  public:
-  explicit Fuse(CadBody& body) : body_(body), solids_(sub_shapes(body.shape, TopAbs_SOLID)), history_(body, builder_) {}
+  explicit Fuse(CadBody& body) : body_(body), solids_(sub_shapes(body.shape, TopAbs_SOLID)), history_(body) {}
 
-  Fusing run(Overlaps overlaps) {
-    builder_.SetNonDestructive(true);
-    builder_.SetUseOBB(true);
-    for (int s = 1; s <= solids_.Extent(); ++s) {
-      const TopoDS_Shape solid = history_.elementary(solids_(s));
-      builder_.AddArgument(volume_of(solid) < 0 ? solid.Reversed() : solid);
-    }
-    builder_.Perform();
-    if (builder_.HasErrors()) return fail("solids that touch could not be fused: the CAD kernel failed");
+  Result<Fusing> run(Overlaps overlaps, const std::string& source) {
+    if (!build()) return fail("solids that touch could not be fused: the CAD kernel failed");
     if (!anything_changed()) return Fusing::apart;
-    if (const auto overlap = overlaps == Overlaps::refuse ? overlapping_solid() : 0; overlap != 0) {
-      return fail("solids that touch are not fused: " + name_of(overlap) + " overlaps another one");
+    if (overlaps == Overlaps::refuse) {
+      if (const auto overlap = common_cell()) return overlap_error(body_, *overlap, source);
+      if (const int split = split_solid(); split != 0)
+        return fail("solids that touch are not fused: " + name_of(split) + " would be split");
     }
     if (const auto changed = changed_solid(); changed != 0) {
       return fail("solids that touch are not fused: " + name_of(changed) + " would change its volume");
@@ -73,12 +78,69 @@ class Fuse {
     return Fusing::failed;
   }
 
+  /// Fuses neighbours first, then what became of them: the kernel looks for each pair of faces at all that meets
+  /// anywhere, so a hundred solids at once take it a minute.
+  bool build() {
+    std::vector<TopTools_ListOfShape> groups = groups_of_neighbours();
+    while (groups.size() > 1) {
+      TopTools_ListOfShape whole;
+      for (const TopTools_ListOfShape& group : groups) {
+        if (!fuse(group)) return false;
+        whole.Append(builders_.back().Shape());
+      }
+      groups.assign(1, whole);
+    }
+    return fuse(groups.front());
+  }
+
+  bool fuse(const TopTools_ListOfShape& shapes) {
+    BOPAlgo_Builder& builder = builders_.emplace_back();
+    builder.SetNonDestructive(true);
+    builder.SetUseOBB(true);
+    for (const TopoDS_Shape& shape : shapes) builder.AddArgument(shape);
+    builder.Perform();
+    history_.add(builder);
+    return !builder.HasErrors();
+  }
+
+  /// Halves the solids across the longest side of the box of their middles, again and again, until few are left.
+  std::vector<TopTools_ListOfShape> groups_of_neighbours() {
+    std::vector<std::pair<gp_Pnt, TopoDS_Shape>> solids;
+    for (int s = 1; s <= solids_.Extent(); ++s) {
+      const TopoDS_Shape solid = history_.elementary(solids_(s));
+      Bnd_Box box;
+      BRepBndLib::Add(solid, box, false);
+      const gp_Pnt middle = box.IsVoid() ? gp_Pnt() : gp_Pnt(0.5 * (box.CornerMin().XYZ() + box.CornerMax().XYZ()));
+      solids.emplace_back(middle, volume_of(solid) < 0 ? solid.Reversed() : solid);
+    }
+    std::vector<TopTools_ListOfShape> groups;
+    collect_groups(solids.begin(), solids.end(), groups);
+    return groups;
+  }
+
+  template <class Iterator>
+  static void collect_groups(Iterator begin, Iterator end, std::vector<TopTools_ListOfShape>& groups) {
+    if (static_cast<std::size_t>(end - begin) <= kGroup) {
+      TopTools_ListOfShape& group = groups.emplace_back();
+      for (Iterator it = begin; it != end; ++it) group.Append(it->second);
+      return;
+    }
+    Bnd_Box box;
+    for (Iterator it = begin; it != end; ++it) box.Add(it->first);
+    const gp_XYZ sides = box.CornerMax().XYZ() - box.CornerMin().XYZ();
+    const int axis = sides.X() >= sides.Y() && sides.X() >= sides.Z() ? 1 : sides.Y() >= sides.Z() ? 2 : 3;
+    std::stable_sort(begin, end,
+                     [axis](const auto& a, const auto& b) { return a.first.Coord(axis) < b.first.Coord(axis); });
+    collect_groups(begin, begin + (end - begin) / 2, groups);
+    collect_groups(begin + (end - begin) / 2, end, groups);
+  }
+
   bool anything_changed() {
     // A solid that lies in another one splits that one, but none of its parts.
     for (const TopAbs_ShapeEnum type : {TopAbs_SOLID, TopAbs_FACE, TopAbs_EDGE, TopAbs_VERTEX}) {
       const TopTools_IndexedMapOfShape parts = sub_shapes(body_.shape, type);
       for (int i = 1; i <= parts.Extent(); ++i) {
-        if (!builder_.Modified(history_.elementary(parts(i))).IsEmpty()) return true;
+        if (history_.is_changed(parts(i))) return true;
       }
     }
     return false;
@@ -88,8 +150,28 @@ class Fuse {
     return "solid " + std::to_string(body_.solids[static_cast<std::size_t>(solid - 1)].cad_id);
   }
 
+  /// The first cell that is of two solids and thicker than their tolerances.
+  std::optional<Overlap> common_cell() {
+    TopTools_IndexedMapOfShape cells;
+    std::vector<int> owner;
+    const double depth = overlap_depth(body_);
+    for (int s = 1; s <= solids_.Extent(); ++s) {
+      for (const TopoDS_Shape& cell : history_.images(solids_(s))) {
+        const auto at = static_cast<std::size_t>(cells.Add(cell)) - 1;
+        if (at == owner.size()) {
+          owner.push_back(s);
+        } else if (const double volume = std::abs(volume_of(cell)); volume > depth * depth * depth) {
+          GProp_GProps middle;
+          BRepGProp::VolumeProperties(cell, middle);
+          return Overlap{owner[at], s, volume, to_vec(middle.CentreOfMass().XYZ())};
+        }
+      }
+    }
+    return std::nullopt;
+  }
+
   /// The first solid that does not come out as one cell of its own; 0 if there is none.
-  int overlapping_solid() {
+  int split_solid() {
     TopTools_IndexedMapOfShape taken;
     for (int s = 1; s <= solids_.Extent(); ++s) {
       const TopTools_ListOfShape list = history_.images(solids_(s));
@@ -158,18 +240,18 @@ class Fuse {
 
   CadBody& body_;
   TopTools_IndexedMapOfShape solids_;
-  BOPAlgo_Builder builder_;
+  std::deque<BOPAlgo_Builder> builders_;
   FuseHistory history_;
 };
 
 }  // namespace
 
-Fusing fuse_touching(CadBody& body, Overlaps overlaps) {
+Result<Fusing> fuse_touching(CadBody& body, Overlaps overlaps, const std::string& source) {
   const TopTools_IndexedMapOfShape solids = sub_shapes(body.shape, TopAbs_SOLID);
   if (solids.Extent() < 2) return Fusing::apart;
   // A solid may lie in another one without a face near a face.
   if (overlaps == Overlaps::refuse && !may_touch(solids)) return Fusing::apart;
-  return Fuse(body).run(overlaps);
+  return Fuse(body).run(overlaps, source);
 }
 
 }  // namespace curvetet

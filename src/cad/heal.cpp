@@ -109,23 +109,27 @@ void fix_shape(CadBody& body) {
   replace_shape(body, fix->Shape(), [&](const TopoDS_Shape& part) { return context->Apply(part); });
 }
 
-/// Imprints and merges solids that touch; the result is kept unless it is worse.
-void fuse(Attempt& best, const std::string& source, Overlaps overlaps) {
+/// Imprints and merges solids that touch; the result is kept unless it is worse. An error if solids
+/// overlap that must not.
+Status fuse(Attempt& best, const std::string& source, Overlaps overlaps) {
   CadBody fused = best.body;
-  const Fusing outcome = fuse_touching(fused, overlaps);
+  const Result<Fusing> fusing = fuse_touching(fused, overlaps, source);
+  if (!fusing) return fusing.error();
+  const Fusing outcome = fusing.value();
   if (outcome == Fusing::failed) best.model.value().healing.push_back(fused.notes.back());
   if (outcome != Fusing::imprinted) {
     best.body.notes = std::move(fused.notes);
-    return;
+    return Done{};
   }
   Attempt next = attempt(std::move(fused), source);
   if (next.bad < kSerious) {
     best = std::move(next);
-    return;
+    return Done{};
   }
   const HealingNote note{"file", "solids that touch are not fused: the fused shape would be broken"};
   best.body.notes.push_back(note);
   best.model.value().healing.push_back(note);
+  return Done{};
 }
 
 Error fault_error(const Attempt& result, const std::string& source) {
@@ -168,7 +172,7 @@ Result<Model> heal_and_convert(CadBody& body, const std::string& source, Overlap
     if (overlaps == Overlaps::refuse) {
       if (const auto error = find_overlap(best.body, source)) return *error;
     }
-    fuse(best, source, overlaps);
+    if (const Status fused = fuse(best, source, overlaps); !fused) return fused.error();
     body = std::move(best.body);
     for (const ModelFault& fault : best.faults) {
       const HealingNote note{fault.entity, fault.what + " (left as it is)"};

@@ -15,9 +15,16 @@ bool is_swept_line(const TopoDS_Shape& face) {
   return !ElementarySurfaces::elementary(BRep_Tool::Surface(TopoDS::Face(face), location)).IsNull();
 }
 
+/// Appends what a builder made of the shape; the shape itself, if it left it alone.
+void append_images(BOPAlgo_Builder& builder, const TopoDS_Shape& shape, TopTools_ListOfShape& list) {
+  const TopTools_ListOfShape& made = builder.Modified(shape);
+  if (made.IsEmpty() && !builder.IsDeleted(shape)) list.Append(shape);
+  for (const TopoDS_Shape& image : made) list.Append(image);
+}
+
 }  // namespace
 
-FuseHistory::FuseHistory(const CadBody& body, BOPAlgo_Builder& builder) : builder_(builder) {
+FuseHistory::FuseHistory(const CadBody& body) {
   const TopTools_IndexedMapOfShape faces = sub_shapes(body.shape, TopAbs_FACE);
   bool any = false;
   for (int i = 1; i <= faces.Extent() && !any; ++i) any = is_swept_line(faces(i));
@@ -28,10 +35,19 @@ FuseHistory::FuseHistory(const CadBody& body, BOPAlgo_Builder& builder) : builde
 }
 
 TopTools_ListOfShape FuseHistory::images(const TopoDS_Shape& part) {
-  const TopoDS_Shape shape = elementary(part);
-  TopTools_ListOfShape list = builder_.Modified(shape);
-  if (list.IsEmpty() && !builder_.IsDeleted(shape)) list.Append(shape);
+  TopTools_ListOfShape list;
+  list.Append(elementary(part));
+  for (BOPAlgo_Builder* builder : builders_) {
+    TopTools_ListOfShape next;
+    for (const TopoDS_Shape& shape : list) append_images(*builder, shape, next);
+    list = next;
+  }
   return list;
+}
+
+bool FuseHistory::is_changed(const TopoDS_Shape& part) {
+  const TopTools_ListOfShape list = images(part);
+  return list.Extent() != 1 || !list.First().IsSame(elementary(part));
 }
 
 TopoDS_Shape FuseHistory::image(const TopoDS_Shape& part) {

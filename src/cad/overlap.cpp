@@ -31,7 +31,7 @@
 namespace curvetet {
 namespace {
 
-/// Of the body's diagonal: solids that overlap by less only touch, as far as their tolerances tell.
+/// Of the body's diagonal: overlap_depth.
 constexpr double kDepth = 1e-4;
 /// Points that are classified, at most: a second or two.
 constexpr std::size_t kLargestEffort = 20000;
@@ -119,13 +119,24 @@ double common_volume(const TopoDS_Shape& a, const TopoDS_Shape& b) {
 
 }  // namespace
 
+double overlap_depth(const CadBody& body) { return kDepth * diagonal_of(body.shape); }
+
+Error overlap_error(const CadBody& body, const Overlap& overlap, const std::string& source) {
+  const auto label = [&](int solid) { return std::to_string(body.solids[static_cast<std::size_t>(solid - 1)].cad_id); };
+  const std::string one = label(overlap.one), two = label(overlap.two);
+  return {ErrorCode::overlapping_solids,
+          fmt::format("solids {} and {} of {} overlap by {:.4g} {}^3", one, two, source, overlap.volume, body.unit),
+          {"solid " + one, "solid " + two},
+          overlap.place,
+          "cut one solid out of the other in the CAD system, or let them be split (--overlaps split)"};
+}
+
 std::optional<Error> find_overlap(const CadBody& body, const std::string& source) {
   const TopTools_IndexedMapOfShape solids = sub_shapes(body.shape, TopAbs_SOLID);
   if (solids.Extent() < 2) return std::nullopt;
   std::deque<Part> parts;
   for (int s = 1; s <= solids.Extent(); ++s) parts.emplace_back(solids(s));
-  const double depth = kDepth * diagonal_of(body.shape);
-  const auto label = [&](std::size_t i) { return std::to_string(body.solids[i].cad_id); };
+  const double depth = overlap_depth(body);
   std::size_t effort = 0;
   for (std::size_t i = 0; i < parts.size(); ++i) {
     for (std::size_t j = i + 1; j < parts.size(); ++j) {
@@ -136,12 +147,8 @@ std::optional<Error> find_overlap(const CadBody& body, const std::string& source
           if (!parts[in].holds(point, depth)) continue;
           const double volume = common_volume(solids(static_cast<int>(i + 1)), solids(static_cast<int>(j + 1)));
           if (!(volume > depth * depth * depth)) break;
-          return Error{ErrorCode::overlapping_solids,
-                       fmt::format("solids {} and {} of {} overlap by {:.4g} {}^3", label(i), label(j), source, volume,
-                                   body.unit),
-                       {"solid " + label(i), "solid " + label(j)},
-                       to_vec(point.XYZ()),
-                       "cut one solid out of the other in the CAD system, or let them be split (--overlaps split)"};
+          return overlap_error(body, {static_cast<int>(i + 1), static_cast<int>(j + 1), volume, to_vec(point.XYZ())},
+                               source);
         }
       }
     }

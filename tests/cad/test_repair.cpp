@@ -228,6 +228,36 @@ TEST(Repair, OverlappingSolidsAreRefused) {
   }
 }
 
+// No vertex of one bar, and no middle or quarter of an edge, is in the other: only the fuse finds what they have in
+// common.
+TEST(Repair, CrossedBarsAreRefusedByWhatTheFuseFinds) {
+  const TopoDS_Shape one = BRepPrimAPI_MakeBox(10, 1, 1).Shape();
+  const TopoDS_Shape two = BRepPrimAPI_MakeBox(gp_Pnt(2.8, 0.2, -3.3), 1, 0.6, 10).Shape();
+  const Result<Model> model = convert(compound_of({one, two}));
+  ASSERT_FALSE(model);
+  EXPECT_EQ(model.error().code, ErrorCode::overlapping_solids) << model.error().message;
+  EXPECT_EQ(model.error().entities, (std::vector<std::string>{"solid 1", "solid 2"}));
+  EXPECT_NE(model.error().message.find("0.6"), std::string::npos) << model.error().message;
+  ASSERT_TRUE(model.error().where.has_value());
+  EXPECT_NEAR(distance(*model.error().where, {3.3, 0.5, 0.5}), 0, 1e-6);
+}
+
+// More solids than are fused at once, in rows that touch on all sides.
+TEST(Repair, ManySolidsThatTouchShareTheirContacts) {
+  std::vector<TopoDS_Shape> boxes;
+  for (int x = 0; x < 6; ++x)
+    for (int y = 0; y < 5; ++y)
+      for (int z = 0; z < 2; ++z) boxes.push_back(BRepPrimAPI_MakeBox(gp_Pnt(x, y, z), 1, 1, 1).Shape());
+  const Result<Model> result = convert(compound_of(boxes));
+  ASSERT_TRUE(result) << result.error().message;
+  const Model& model = result.value();
+  test::expect_sound(model, "boxes that touch");
+  EXPECT_EQ(model.solids.size(), 60U);
+  EXPECT_EQ(model.faces.size(), 7U * 5 * 2 + 6 * 6 * 2 + 6 * 5 * 3);
+  EXPECT_EQ(model.vertices.size(), 7U * 6 * 3);
+  EXPECT_NEAR(test::total_volume(model), 60, 1e-9);
+}
+
 TEST(Repair, SolidsApartAreNot) {
   EXPECT_TRUE(convert(compound_of({box(), BRepPrimAPI_MakeBox(gp_Pnt(5, 3, 3), 4, 4, 4).Shape()})));
   EXPECT_TRUE(convert(compound_of({box(), BRepPrimAPI_MakeBox(gp_Pnt(4, 1, 1), 2, 2, 2).Shape()}))) << "they touch";
