@@ -60,13 +60,13 @@ class Fuse {
   Result<Fusing> run(Overlaps overlaps, const std::string& source) {
     if (!build()) return fail("solids that touch could not be fused: the CAD kernel failed");
     if (!anything_changed()) return Fusing::apart;
+    if (const auto changed = changed_solid(); changed != 0) {
+      return fail("solids that touch are not fused: " + name_of(changed) + " would change its volume");
+    }
     if (overlaps == Overlaps::refuse) {
       if (const auto overlap = common_cell()) return overlap_error(body_, *overlap, source);
       if (const int split = split_solid(); split != 0)
-        return fail("solids that touch are not fused: " + name_of(split) + " would be split");
-    }
-    if (const auto changed = changed_solid(); changed != 0) {
-      return fail("solids that touch are not fused: " + name_of(changed) + " would change its volume");
+        return fail("solids that touch are not fused: " + name_of(split) + " overlaps another one, by a hair");
     }
     replace();
     return Fusing::imprinted;
@@ -150,24 +150,39 @@ class Fuse {
     return "solid " + std::to_string(body_.solids[static_cast<std::size_t>(solid - 1)].cad_id);
   }
 
+  /// Of a plate with the cell's volume and surface.
+  static double thickness(const TopoDS_Shape& cell, double volume) {
+    GProp_GProps surface;
+    BRepGProp::SurfaceProperties(cell, surface);
+    return surface.Mass() > 0 ? 2 * volume / surface.Mass() : 0;
+  }
+
   /// The first cell that is of two solids and thicker than their tolerances.
   std::optional<Overlap> common_cell() {
     TopTools_IndexedMapOfShape cells;
     std::vector<int> owner;
-    const double depth = overlap_depth(body_);
     for (int s = 1; s <= solids_.Extent(); ++s) {
       for (const TopoDS_Shape& cell : history_.images(solids_(s))) {
         const auto at = static_cast<std::size_t>(cells.Add(cell)) - 1;
         if (at == owner.size()) {
           owner.push_back(s);
-        } else if (const double volume = std::abs(volume_of(cell)); volume > depth * depth * depth) {
-          GProp_GProps middle;
-          BRepGProp::VolumeProperties(cell, middle);
-          return Overlap{owner[at], s, volume, to_vec(middle.CentreOfMass().XYZ())};
+        } else if (const auto found = overlap_of(owner[at], s, cell)) {
+          return found;
         }
       }
     }
     return std::nullopt;
+  }
+
+  /// The kernel takes what lies in a void for common if the void's shell is turned the wrong way.
+  std::optional<Overlap> overlap_of(int one, int two, const TopoDS_Shape& cell) {
+    const double volume = std::abs(volume_of(cell));
+    if (thickness(cell, volume) <= overlap_depth(body_)) return std::nullopt;
+    GProp_GProps middle;
+    BRepGProp::VolumeProperties(cell, middle);
+    const Vec3 place = to_vec(middle.CentreOfMass().XYZ());
+    if (!is_inside(solids_(one), place) || !is_inside(solids_(two), place)) return std::nullopt;
+    return Overlap{one, two, volume, place};
   }
 
   /// The first solid that does not come out as one cell of its own; 0 if there is none.

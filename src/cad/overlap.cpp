@@ -119,6 +119,10 @@ double common_volume(const TopoDS_Shape& a, const TopoDS_Shape& b) {
 
 }  // namespace
 
+bool is_inside(const TopoDS_Shape& solid, Vec3 point) {
+  return Part(solid).holds(gp_Pnt(point.x, point.y, point.z), 0);
+}
+
 double overlap_depth(const CadBody& body) { return kDepth * diagonal_of(body.shape); }
 
 Error overlap_error(const CadBody& body, const Overlap& overlap, const std::string& source) {

@@ -16,6 +16,9 @@ struct Overlap {
   Vec3 place;
 };
 
+/// Is the point inside, by the parity of the shells around it? Those of voids need not be turned the right way.
+bool is_inside(const TopoDS_Shape& solid, Vec3 point);
+
 /// Solids that overlap by less only touch, as far as their tolerances tell.
 double overlap_depth(const CadBody& body);
 
