@@ -182,7 +182,7 @@ class Batch {
     row.valid = row.exit == 0 && fs::is_regular_file(in_folder(row.mesh), ignored);
     describe(ended, row);
     if (row.exit != 0 && !fs::exists(in_folder(row.report), ignored)) {
-      if (const Status room = probe(); !room) return room;
+      if (Status room = probe(); !room) return room;
     }
     // A full disk is not the body's fault: nothing more would come of the batch.
     if (row.cause == kUnwritable)
@@ -199,7 +199,7 @@ class Batch {
   Status probe() const {
     constexpr std::size_t kBytes = 65536;
     const std::string path = in_folder(".probe");
-    const Status written = write_file_atomically(path, std::string(kBytes, ' '));
+    Status written = write_file_atomically(path, std::string(kBytes, ' '));
     std::error_code ignored;
     fs::remove(path, ignored);
     return written;

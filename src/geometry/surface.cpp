@@ -9,12 +9,15 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 
 namespace curvetet {
 namespace {
 
 constexpr double kCollapsed = 1e-9;
 constexpr int kProjectionSteps = 60;
+/// Working length: the noise of a body ten thousand of its diagonals away from the origin, and some more.
+constexpr double kNoise = 1e-10;
 
 /// The unit normal unless the derivatives collapse; extents make du and dv comparable.
 std::optional<Vec3> plain_normal(Vec3 du, Vec3 dv, double extent_u, double extent_v) {
@@ -88,7 +91,7 @@ Vec3 Surface::normal(Vec2 uv) const {
 std::optional<Vec2> Surface::project(Vec3 point, Vec2 guess) const {
   Vec2 uv = guess;
   SurfaceSecond s = second(uv);
-  double damping = 0;
+  double damping = 0, moved = std::numeric_limits<double>::infinity();
   for (int step = 0; step < kProjectionSteps; ++step) {
     const Vec3 r = s.value - point;
     const Vec2 gradient{dot(s.du, r), dot(s.dv, r)};
@@ -111,7 +114,7 @@ std::optional<Vec2> Surface::project(Vec3 point, Vec2 guess) const {
     if (!std::isfinite(next.x) || !std::isfinite(next.y)) return std::nullopt;
     const SurfaceSecond there = second(next);
     const double distance_next = distance(there.value, point);
-    const double moved = size_u * std::abs(move->x) + size_v * std::abs(move->y);
+    moved = size_u * std::abs(move->x) + size_v * std::abs(move->y);
     if (distance_next <= distance_now * (1 + 1e-15)) {
       uv = next;
       s = there;
@@ -123,7 +126,8 @@ std::optional<Vec2> Surface::project(Vec3 point, Vec2 guess) const {
       if (damping > 1e12) return std::nullopt;
     }
   }
-  return std::nullopt;
+  // Far from the origin of its coordinates a body's values are noisy: steps of that size never end.
+  return moved * (1 + damping) <= kNoise ? std::optional(uv) : std::nullopt;
 }
 
 Vec2 Surface::curvatures(Vec2 uv) const {

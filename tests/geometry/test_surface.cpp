@@ -169,5 +169,47 @@ TEST(Models, NamesAndFacesAtAVertex) {
   for (std::size_t v = 0; v < box.vertices.size(); ++v) EXPECT_EQ(box.faces_at(CadVertexId(v)).size(), 3U);
 }
 
+/// A surface whose values are those of a body ten thousand of its diagonals from the origin, moved back.
+class FarSurface : public Surface {
+ public:
+  explicit FarSurface(std::unique_ptr<Surface> near) : near_(std::move(near)) {}
+  SurfaceKind kind() const override { return SurfaceKind::other; }
+  Vec3 value(Vec2 uv) const override { return noisy(near_->value(uv)); }
+  SurfaceFirst first(Vec2 uv) const override {
+    SurfaceFirst s = near_->first(uv);
+    s.value = noisy(s.value);
+    return s;
+  }
+  SurfaceSecond second(Vec2 uv) const override {
+    SurfaceSecond s = near_->second(uv);
+    s.value = noisy(s.value);
+    return s;
+  }
+  std::unique_ptr<Surface> clone() const override { return std::make_unique<FarSurface>(near_->clone()); }
+
+ private:
+  static Vec3 noisy(Vec3 p) {
+    const volatile double x = p.x + 1e4, y = p.y - 7e3, z = p.z + 3e3;
+    return {x - 1e4, y + 7e3, z - 3e3};
+  }
+  std::unique_ptr<Surface> near_;
+};
+
+TEST(Surfaces, ProjectionEndsFarFromTheOrigin) {
+  std::mt19937 random(5);
+  for (Case& c : cases()) {
+    const FarSurface surface(c.surface->clone());
+    std::uniform_real_distribution<double> u(c.low.x, c.high.x), v(c.low.y, c.high.y), off(-0.02, 0.02);
+    for (int i = 0; i < 300; ++i) {
+      const Vec2 uv{u(random), v(random)};
+      const Vec3 point = i % 2 == 0 ? surface.value(uv) : surface.value(uv) + off(random) * c.surface->normal(uv);
+      const auto foot = surface.project(point, {uv.x + 0.01, uv.y - 0.01});
+      ASSERT_TRUE(foot.has_value()) << name(c.surface->kind()) << " " << i;
+      // Off the surface a step sideways is lost in the noise until its square is not.
+      EXPECT_LT(distance(c.surface->value(*foot), c.surface->value(uv)), i % 2 == 0 ? 1e-9 : 1e-6);
+    }
+  }
+}
+
 }  // namespace
 }  // namespace curvetet
