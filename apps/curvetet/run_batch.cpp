@@ -257,8 +257,9 @@ class Batch {
     const std::size_t done = results_.rows().size(), valid = results_.valid();
     fmt::print("valid {} of {} ({:.1f} %)\n", valid, done,
                100.0 * static_cast<double>(valid) / static_cast<double>(std::max<std::size_t>(done, 1)));
-    auto causes = results_.causes();
+    const auto causes = results_.causes();
     std::vector<std::pair<std::size_t, std::string>> order;
+    order.reserve(causes.size());
     for (const auto& [cause, count] : causes) order.emplace_back(count, cause);
     std::sort(order.begin(), order.end(), [](const auto& a, const auto& b) {
       return a.first != b.first ? a.first > b.first : a.second < b.second;
