@@ -15,6 +15,7 @@
 #include <numbers>
 #include <set>
 
+#include "boundary/refine_surface.h"
 #include "predicates/predicates.h"
 
 namespace curvetet {
@@ -26,6 +27,9 @@ NodePair ordered(NodeId a, NodeId b) { return a < b ? NodePair{a, b} : NodePair{
 
 /// Sine of a triangle's least angle, below which it counts as flat: half a degree.
 constexpr double kFlatSine = 0.0087;
+
+/// Cosine of the angle to the surface's normal, 84 degrees, from which a facet counts as folded.
+constexpr double kFolded = 0.1;
 
 class March {
  public:
@@ -273,7 +277,8 @@ class March {
 
   void settle(const Hole& hole) {
     const bool closed = hole.marked.size() == hole.triangles && all_edges_full(hole.marked) &&
-                        std::abs(hole.area - hole.marked_area) <= 1e-9 * hole.area && !flatter(hole);
+                        std::abs(hole.area - hole.marked_area) <= 1e-9 * hole.area && !flatter(hole) && !folds(hole) &&
+                        !crowds(hole);
     if (closed) {
       result_.triangles.insert(result_.triangles.end(), hole.marked.begin(), hole.marked.end());
       return;
@@ -289,6 +294,34 @@ class March {
     for (TriangleId t : hole.old) now = std::min(now, least_sine(mesh_.triangle(t).node));
     for (const NodeTriple& n : hole.marked) then = std::min(then, least_sine(n));
     return then < 0.5 * now;
+  }
+
+  /// Would a facet be folded against the surface it is nearest to, as one that spans half a turn of a cylinder?
+  bool folds(const Hole& hole) const {
+    return std::any_of(hole.marked.begin(), hole.marked.end(),
+                       [&](const NodeTriple& n) { return facing_at_foot(conjoint_, face_, n) < kFolded; });
+  }
+
+  /// Would an edge of the hole be an edge of another face, too, though it is no segment? Four facets would meet there.
+  bool crowds(const Hole& hole) const {
+    return std::any_of(hole.marked.begin(), hole.marked.end(), [&](const NodeTriple& n) {
+      for (std::size_t k = 0; k < 3; ++k)
+        if (is_edge_elsewhere(mesh_.node(n[k]).vertex, mesh_.node(n[(k + 1) % 3]).vertex)) return true;
+      return false;
+    });
+  }
+
+  bool is_edge_elsewhere(VertexId a, VertexId b) const {
+    if (a == b || conjoint_.segment_edge(a, b).valid()) return false;
+    const std::vector<FaceId>&of_a = conjoint_.faces_of(a), &of_b = conjoint_.faces_of(b);
+    return std::any_of(of_a.begin(), of_a.end(), [&](FaceId other) {
+      if (other == face_ || std::find(of_b.begin(), of_b.end(), other) == of_b.end()) return false;
+      const FaceMesh& mesh = conjoint_.boundary().faces[other];
+      for (NodeId m : mesh.nodes_of(a))
+        for (NodeId n : mesh.nodes_of(b))
+          if (mesh.find_edge(m, n)) return true;
+      return false;
+    });
   }
 
   /// Of the angles in space.

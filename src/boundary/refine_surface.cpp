@@ -175,20 +175,31 @@ double facing(const Conjoint& conjoint, FaceId face, TriangleId triangle) {
 }
 
 double facing_at_foot(const Conjoint& conjoint, FaceId face, TriangleId triangle) {
+  return facing_at_foot(conjoint, face, conjoint.boundary().faces[face].triangle(triangle).node);
+}
+
+double facing_at_foot(const Conjoint& conjoint, FaceId face, const std::array<NodeId, 3>& nodes) {
   const FaceMesh& mesh = conjoint.boundary().faces[face];
   const Surface& surface = *conjoint.model().faces[face].surface;
-  const auto [q, p] = places_of(conjoint, face, triangle);
+  std::array<Vec2, 3> q;
+  std::array<Vec3, 3> p;
+  for (std::size_t k = 0; k < 3; ++k) {
+    q[k] = mesh.node(nodes[k]).q;
+    p[k] = conjoint.vertices().position(mesh.node(nodes[k]).vertex);
+  }
   const Vec3 centroid = (1.0 / 3) * (p[0] + p[1] + p[2]);
   double nearest = std::numeric_limits<double>::infinity();
   std::optional<Vec2> foot;
-  for (const Vec2 guess : {chart_centroid(mesh, triangle), q[0], q[1], q[2]}) {
+  for (const Vec2 guess : {(1.0 / 3) * (q[0] + q[1] + q[2]), q[0], q[1], q[2]}) {
     const auto found = surface.project(centroid, mesh.chart.to_uv(guess));
     const double away = found ? distance(surface.value(*found), centroid) : nearest;
     if (!(away < nearest)) continue;
     nearest = away;
     foot = found;
   }
-  return foot ? dot(normalized(cross(p[1] - p[0], p[2] - p[0])), surface.normal(*foot)) : 1;
+  // Beyond its border the face's surface may turn back: the closest point of the face is on the border then.
+  const Vec2 uv = foot ? within_box(conjoint.model().faces[face], *foot) : Vec2{};
+  return foot ? dot(normalized(cross(p[1] - p[0], p[2] - p[0])), surface.normal(uv)) : 1;
 }
 
 double segment_deviation(const Conjoint& conjoint, EdgeId edge, VertexId a, VertexId b) {

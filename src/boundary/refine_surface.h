@@ -34,6 +34,7 @@ double facing(const Conjoint& conjoint, FaceId face, TriangleId triangle);
 /// Cosine of the angle between a triangle's normal and the surface's where that is nearest to its centroid, searched
 /// from the same place of the chart and from the corners, as the final check does; 1 if no such place is found.
 double facing_at_foot(const Conjoint& conjoint, FaceId face, TriangleId triangle);
+double facing_at_foot(const Conjoint& conjoint, FaceId face, const std::array<NodeId, 3>& nodes);
 /// Distance from the middle of a segment to the curve at the middle parameter.
 double segment_deviation(const Conjoint& conjoint, EdgeId edge, VertexId a, VertexId b);
 

@@ -2,6 +2,7 @@
 // kernel here.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <memory>
@@ -78,6 +79,13 @@ struct ModelFace {
   SolidId front, back;
   double area = 0;  ///< the CAD's own, working units squared; 0 if unknown
 };
+
+/// The closest parameters in the box of the face's domain, where the surface is not periodic.
+inline Vec2 within_box(const ModelFace& face, Vec2 uv) {
+  if (!(face.surface->period_u() > 0)) uv.x = std::clamp(uv.x, face.low.x, face.high.x);
+  if (!(face.surface->period_v() > 0)) uv.y = std::clamp(uv.y, face.low.y, face.high.y);
+  return uv;
+}
 
 struct ModelSolid {
   Label label;

@@ -7,6 +7,7 @@
 #include <algorithm>
 
 #include "boundary/fill_holes.h"
+#include "boundary/simplicial.h"
 
 namespace curvetet {
 
@@ -107,11 +108,22 @@ class BodyMesher {
     const Status recovered = recover(body);
     if (!recovered.ok()) return recovered.error();
     if (!body.recovery.failures.empty()) return body.recovery.failures;
+    if (const Failures shared = shared_edges(body); !shared.empty()) return shared;
 
     clock_.start("classification", 0.5);
     body.classified = classify(*body.conjoint);
     own_points(*body.conjoint);
     return body.classified.failures;
+  }
+
+  /// Recovery puts points where the surface meshes had none, and two sheets may share an edge then that they must not.
+  Failures shared_edges(const BodyMesh& body) const {
+    Failures failures;
+    for (const Offence& offence : find_offences(model_, body.boundary)) {
+      const Vec3 a = body.vertices.position(offence.a), b = body.vertices.position(offence.b);
+      failures.push_back({{offence.face}, 0.5 * (a + b), 0.5 * distance(a, b), describe(offence, model_)});
+    }
+    return failures;
   }
 
   static std::vector<VertexId> used_vertices(const BodyMesh& body) {

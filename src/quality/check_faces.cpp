@@ -123,7 +123,9 @@ class FaceTask {
       return;
     }
     outcome.slack += triangle_area(a, b, c) * foot->distance;
-    if (dot(cross(b - a, c - a), projector_.outward_normal(foot->uv)) < 0) outcome.folds.push_back(t);
+    // Beyond its border the face's surface may turn back: the closest point of the face is on the border then.
+    const Vec2 uv = foot->inside_box ? foot->uv : within_box(face_, foot->uv);
+    if (dot(cross(b - a, c - a), projector_.outward_normal(uv)) < 0) outcome.folds.push_back(t);
   }
 
   /// The foot of a node, found once; reports the node if it is off the surface.
