@@ -2,6 +2,7 @@
 // or more of each kind of surface. Usage: make_bodies FOLDER
 #include <BRepAlgoAPI_Common.hxx>
 #include <BRepAlgoAPI_Cut.hxx>
+#include <BRepAlgoAPI_Fuse.hxx>
 #include <BRepBuilderAPI_GTransform.hxx>
 #include <BRepBuilderAPI_MakeEdge.hxx>
 #include <BRepBuilderAPI_MakeFace.hxx>
@@ -147,6 +148,17 @@ void seams() {
 
 }  // namespace
 
+/// Half-round slots and ridges in blocks: a coarse facet may span all of their half turn.
+void half_turns() {
+  const TopoDS_Shape block = BRepPrimAPI_MakeBox(60, 30, 20).Shape();
+  const gp_Dir along(1, 0, 0), across(0, 1, 0);
+  save("half_slot", cut(block, BRepPrimAPI_MakeCylinder(axis(gp_Pnt(12, 15, 20), along), 1.5, 54).Shape()));
+  save("half_ridge",
+       BRepAlgoAPI_Fuse(block, BRepPrimAPI_MakeCylinder(axis(gp_Pnt(12, 15, 20), along), 1, 36).Shape()).Shape());
+  save("half_cross", cut(cut(block, BRepPrimAPI_MakeCylinder(axis(gp_Pnt(20, -1, 20), across), 2, 40).Shape()),
+                         BRepPrimAPI_MakeCylinder(axis(gp_Pnt(-1, 11, 20), along), 1.6, 99).Shape()));
+}
+
 int main(int argc, char** argv) {
   if (argc != 2) {
     std::fprintf(stderr, "usage: make_bodies FOLDER\n");
@@ -157,5 +169,6 @@ int main(int argc, char** argv) {
   thin_walls();
   kinds();
   seams();
+  half_turns();
   return 0;
 }

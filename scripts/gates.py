@@ -1,12 +1,12 @@
 #!/usr/bin/env python3
-"""Runs the gates of thin walls and of kinds of surfaces over the bodies that bench/make_bodies writes.
+"""Runs the gates of thin walls, of kinds of surfaces and of half turns over the bodies that bench/make_bodies writes.
 
     cmake --preset bench && cmake --build --preset bench --target make_bodies curvetet
     build/bench/bench/make_bodies out/bodies
     scripts/gates.py --curvetet build/bench/apps/curvetet/curvetet --bodies out/bodies --out out/gates
 
 thin-walls: sizes are lengths, without sizes from curvature, so that a coarse mesh crosses itself unless that is prevented
-or cured. kinds: every kind of surface, and holes across seams and at poles, at the box's diagonal over 5, 15 and 40.
+or cured. half-turns: coarse meshes of slots and ridges, likewise without sizes from curvature. kinds: every kind of surface, and holes across seams and at poles, at the box's diagonal over 5, 15 and 40.
 A mesh is valid as scripts/corpus.py says; of some bodies it must be coarse, too. Exit code 1 if one run fails.
 """
 import argparse
@@ -26,7 +26,7 @@ KIND_PREFIXES = ("kind_", "seam_", "pole_")
 
 def parse_arguments():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--gate", choices=["thin-walls", "kinds", "all"], default="all")
+    parser.add_argument("--gate", choices=["thin-walls", "kinds", "half-turns", "all"], default="all")
     parser.add_argument("--coarsest", action="store_true", help="only the coarsest size of each body")
     parser.add_argument("--bodies", required=True, type=pathlib.Path, help="folder that make_bodies has filled")
     parser.add_argument("--curvetet", required=True, type=pathlib.Path)
@@ -71,6 +71,14 @@ def kind_tasks(arguments):
                 "gate": "kinds", "at": f"D/{divisor:g}", **corpus.one(body, divisor)}
 
 
+def half_turn_tasks(arguments):
+    corpus = corpus_with(arguments, 0)
+    for path in sorted(arguments.bodies.glob("half_*.brep")):
+        for divisor in sizes_of(arguments, [3.0, 5.0, 10.0]):
+            yield lambda body=path.name, divisor=divisor: {
+                "gate": "half-turns", "at": f"D/{divisor:g}", **corpus.one(body, divisor)}
+
+
 def hold_to_most(row):
     most = row.get("most")
     if row["status"] == "valid" and most and row["triangles"] > most:
@@ -89,10 +97,9 @@ def main():
         signal.signal(number_of_signal, end_all)
     arguments.out.mkdir(parents=True, exist_ok=True)
     tasks = []
-    if arguments.gate != "kinds":
-        tasks += thin_wall_tasks(arguments)
-    if arguments.gate != "thin-walls":
-        tasks += kind_tasks(arguments)
+    for gate, of_gate in (("thin-walls", thin_wall_tasks), ("half-turns", half_turn_tasks), ("kinds", kind_tasks)):
+        if arguments.gate in (gate, "all"):
+            tasks += of_gate(arguments)
     rows = []
     print(f"{'status':8}  {'gate':10}  {'body':28} {'size':>5}  {'triang.':>7}  {'tets':>7}  {'time':>7}  cause")
     with open(arguments.out / "results.jsonl", "w") as results, \
