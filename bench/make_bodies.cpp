@@ -146,18 +146,28 @@ void seams() {
        cut(BRepPrimAPI_MakeSphere(4).Shape(), BRepPrimAPI_MakeCylinder(axis(gp_Pnt(0, 0, 0)), 1, 10).Shape()));
 }
 
-}  // namespace
-
-/// Half-round slots and ridges in blocks: a coarse facet may span all of their half turn.
-void half_turns() {
+/// Bodies whose coarse meshes without curvature are tempted: by a facet over all of a half turn of a slot or ridge, and
+/// by one edge for two faces across a countersink or where bores meet.
+void coarse() {
   const TopoDS_Shape block = BRepPrimAPI_MakeBox(60, 30, 20).Shape();
   const gp_Dir along(1, 0, 0), across(0, 1, 0);
-  save("half_slot", cut(block, BRepPrimAPI_MakeCylinder(axis(gp_Pnt(12, 15, 20), along), 1.5, 54).Shape()));
-  save("half_ridge",
+  save("coarse_slot", cut(block, BRepPrimAPI_MakeCylinder(axis(gp_Pnt(12, 15, 20), along), 1.5, 54).Shape()));
+  save("coarse_ridge",
        BRepAlgoAPI_Fuse(block, BRepPrimAPI_MakeCylinder(axis(gp_Pnt(12, 15, 20), along), 1, 36).Shape()).Shape());
-  save("half_cross", cut(cut(block, BRepPrimAPI_MakeCylinder(axis(gp_Pnt(20, -1, 20), across), 2, 40).Shape()),
-                         BRepPrimAPI_MakeCylinder(axis(gp_Pnt(-1, 11, 20), along), 1.6, 99).Shape()));
+  save("coarse_slots", cut(cut(block, BRepPrimAPI_MakeCylinder(axis(gp_Pnt(20, -1, 20), across), 2, 40).Shape()),
+                           BRepPrimAPI_MakeCylinder(axis(gp_Pnt(-1, 11, 20), along), 1.6, 99).Shape()));
+  TopoDS_Shape sunk = BRepPrimAPI_MakeBox(80, 50, 20).Shape(), bored = sunk;
+  for (const gp_Pnt& p : {gp_Pnt(10, 12, 0), gp_Pnt(28, 21, 0)}) {
+    sunk = cut(sunk, BRepPrimAPI_MakeCylinder(axis(gp_Pnt(p.X(), p.Y(), -1)), 3, 22).Shape());
+    sunk = cut(sunk, BRepPrimAPI_MakeCone(axis(gp_Pnt(p.X(), p.Y(), 17)), 3, 6, 3).Shape());
+    bored = cut(bored, BRepPrimAPI_MakeCylinder(axis(gp_Pnt(p.X(), -1, 10), across), 4, 60).Shape());
+    bored = cut(bored, BRepPrimAPI_MakeCylinder(axis(gp_Pnt(p.X(), 25, -1)), 3.6, 22).Shape());
+  }
+  save("coarse_countersinks", sunk);
+  save("coarse_bores", bored);
 }
+
+}  // namespace
 
 int main(int argc, char** argv) {
   if (argc != 2) {
@@ -169,6 +179,6 @@ int main(int argc, char** argv) {
   thin_walls();
   kinds();
   seams();
-  half_turns();
+  coarse();
   return 0;
 }

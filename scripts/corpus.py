@@ -1,8 +1,9 @@
 #!/usr/bin/env python3
 """Meshes a list of CAD bodies at several sizes and says what became of each: nothing is skipped, no failure is hidden.
 
-`curvetet batch` meshes, each body in a process of its own with limits of time and memory, at its diagonal over the divisor;
-a run that was ended while it meshed goes on where it was. This script then has the meshes judged and compared. A mesh counts as valid
+`curvetet batch` meshes, each body in a process of its own with limits of time and memory; a run that was ended while it
+meshed goes on where it was. The size is the bounding box's diagonal over the divisor; the diagonal comes from
+manifest.jsonl beside the list, else from `curvetet info --json`. The meshes are then judged and compared: one is valid
 only if curvetet exits with 0, `curvetet check` against the CAD passes and, where an independent judge is given, the judge
 passes too. The judge is any program called as `JUDGE CAD MESH --json OUT` that exits with 0 for a valid mesh, 1 for an
 invalid one and 2 when it could not judge.
@@ -16,6 +17,7 @@ import json
 import os
 import pathlib
 import resource
+import shutil
 import signal
 import subprocess
 import sys
@@ -31,7 +33,6 @@ def parse_arguments():
     parser.add_argument("--divide", default="10,20", help="divisors of the diagonal, separated by commas")
     parser.add_argument("--curvature", type=float, default=12)
     parser.add_argument("--jobs", type=int, default=2)
-    parser.add_argument("--threads", type=int, default=0, help="of each run; 0: all cores")
     parser.add_argument("--time-limit", type=float, default=60, help="seconds for each run of each program")
     parser.add_argument("--memory-limit", type=float, default=4, help="GiB of address space for each run; 0: none")
     parser.add_argument("--curvetet", required=True, type=pathlib.Path)
@@ -57,8 +58,8 @@ def end_all(*_):
     sys.exit("ended before all bodies were done")
 
 
-def run(command, limit, memory_gib):
-    """Exit code (None: timed out, negative: killed by that signal), output, seconds."""
+def run(command, limit, memory_gib, tell=False):
+    """Exit code (None: timed out, negative: killed by that signal), output, seconds. With `tell`, errors are shown instead."""
     def limits():
         os.setsid()
         if memory_gib > 0:
@@ -66,7 +67,7 @@ def run(command, limit, memory_gib):
             resource.setrlimit(resource.RLIMIT_AS, (size, size))
 
     start = time.monotonic()
-    with subprocess.Popen([str(c) for c in command], stdout=subprocess.PIPE, stderr=subprocess.PIPE,
+    with subprocess.Popen([str(c) for c in command], stdout=subprocess.PIPE, stderr=None if tell else subprocess.PIPE,
                           stdin=subprocess.DEVNULL, preexec_fn=limits) as process:
         LIVE.add(process.pid)
         try:
@@ -78,7 +79,7 @@ def run(command, limit, memory_gib):
             code = None
         finally:
             LIVE.discard(process.pid)
-    return code, out.decode(errors="replace"), err.decode(errors="replace"), time.monotonic() - start
+    return code, out.decode(errors="replace"), (err or b"").decode(errors="replace"), time.monotonic() - start
 
 
 def read_json(path_or_text):
@@ -131,83 +132,51 @@ class Corpus:
             return False, verdict.get("failed", ["unnamed"]), verdict
         return None, ["timed out" if code is None else f"could not judge: {err.strip()[:100]}"], verdict
 
-    def mesh_all(self, bodies, divisor):
-        """What `curvetet batch` made of the bodies, by name."""
-        folder = self.a.out / f"at_{divisor:g}"
-        folder.mkdir(parents=True, exist_ok=True)
-        names = {str((self.root / body).resolve()): body for body in bodies}
-        (folder / "list.txt").write_text("".join(f"{path}\n" for path in names))
-        # Once meshes are being judged they are moved and removed: such a run starts over.
-        restart = ["--restart"] if (self.a.out / "results.jsonl").exists() else []
-        command = [self.a.curvetet, "batch", folder / "list.txt", "--out", folder, "--jobs", self.a.jobs, "--time-limit",
-                   self.a.time_limit, "--memory-limit", f"{self.a.memory_limit:g}G", *restart, "--", "--size", f"D/{divisor:g}", "--unit", "mm",
-                   "--threads", self.a.threads, "--curvature", self.a.curvature, *self.a.cad_options.split(), *self.a.options.split()]
-        process = subprocess.Popen([str(c) for c in command], stdout=subprocess.DEVNULL, start_new_session=True)
-        LIVE.add(process.pid)
-        process.wait()
-        LIVE.discard(process.pid)
-        if process.returncode not in (0, 5):
-            sys.exit(f"curvetet batch ended with {process.returncode}")
-        made = {}
-        for line in (folder / "results.jsonl").read_text().splitlines():
-            row = json.loads(line)
-            row["mesh"], row["report"] = folder / row["mesh"], folder / row["report"]
-            made[names[row["body"]]] = row
-        return made
-
-    def made_by_batch(self, body, divisor, made):
-        """The row of a body that was meshed already."""
-        name = f"{pathlib.Path(body).name}.{divisor:g}"
-        row = {"body": body, "divide": divisor, "status": "failed", "cause": "", "size": made["size"], "seconds": made["seconds"],
-               "exit": made["exit"]}
-        mesh, report = self.a.out / f"{name}.msh", self.a.out / f"{name}.report.json"
-        for old, new in ((made["mesh"], mesh), (made["report"], report)):
-            if old.is_file():
-                old.replace(new)
-        self.take_report(row, read_json(report) or {})
-        if made["status"] == "valid" and mesh.is_file():
-            self.check(body, mesh, name, row)
-        else:
-            row["cause"] = f"mesh: {made['cause']}: {made['message'][:160]}"
-        return self.finish(body, mesh, name, row)
-
-    def one(self, body, divisor):
-        name = f"{pathlib.Path(body).name}.{divisor:g}"
-        row = {"body": body, "divide": divisor, "status": "failed", "cause": ""}
+    def row(self, body, divisor):
+        """What is known of a run before it is done. Without a diagonal there is no size, and a cause instead."""
         diagonal, cause = self.diagonal(body)
-        if diagonal is None:
-            row["cause"] = cause
-            return row
-        return self.at_size(body, diagonal / divisor, name, row)
+        return {"body": body, "divide": divisor, "size": None if diagonal is None else diagonal / divisor,
+                "name": f"{pathlib.Path(body).name}.{divisor:g}", "status": "failed", "cause": cause or ""}
 
-    def at_size(self, body, size, name, row):
-        """Meshes one body at one size; the row gets what became of it."""
-        row["size"] = size
-        mesh, report = self.a.out / f"{name}.msh", self.a.out / f"{name}.report.json"
-        for old in (mesh, report):
-            old.unlink(missing_ok=True)
-        command = [self.a.curvetet, "mesh", self.root / body, "-o", mesh, "--report", report, "--size", repr(size),
-                   "--unit", "mm", "--time-limit", self.a.time_limit, "--curvature", self.a.curvature, "-q", *self.a.cad_options.split(), *self.a.options.split()]
-        # The program is to keep the limit by itself; what does not is ended a little later and counted apart.
-        code, _, err, row["seconds"] = run(command, 1.2 * self.a.time_limit + 5, self.a.memory_limit)
-        document = read_json(report) or {}
-        row["exit"] = code
-        self.take_report(row, document)
-        if code != 0 or not mesh.is_file():
-            row["cause"] = describe_failure("mesh", code, document, err)
-        else:
-            self.check(body, mesh, name, row)
-        return self.finish(body, mesh, name, row)
+    def mesh_all(self, rows):
+        """Has `curvetet batch` mesh the body of each row at its size; the rows get what became of it. Meshes and reports
+        are then in the output folder by the rows' names."""
+        rows = [row for row in rows if row["size"]]
+        folder = self.a.out / "batch"
+        folder.mkdir(parents=True, exist_ok=True)
+        keys = {(str((self.root / row["body"]).resolve()), ("--size", repr(row["size"]))): row for row in rows}
+        (folder / "list.txt").write_text("".join("\t".join((path, *options)) + "\n" for path, options in keys))
+        command = [self.a.curvetet, "batch", folder / "list.txt", "--out", folder, "--jobs", self.a.jobs, "--time-limit",
+                   self.a.time_limit, "--", "--unit", "mm", "--curvature", self.a.curvature,
+                   *self.a.cad_options.split(), *self.a.options.split()]
+        code, _, _, _ = run(command, None, self.a.memory_limit, tell=True)
+        if code not in (0, 5):
+            sys.exit(f"curvetet batch ended with {code}")
+        for line in (folder / "results.jsonl").read_text().splitlines():
+            made = json.loads(line)
+            row = keys.get((made["body"], tuple(made["options"])))
+            if row is not None:
+                self.take(row, made, folder)
+        shutil.rmtree(folder)  # what was made is taken: another run starts over
 
-    @staticmethod
-    def take_report(row, document):
+    def take(self, row, made, folder):
+        row["seconds"], row["exit"] = made["seconds"], made["exit"]
+        for key, ending in (("mesh", "msh"), ("report", "report.json")):
+            if (folder / made[key]).is_file():
+                (folder / made[key]).replace(self.a.out / f"{row['name']}.{ending}")
+        document = read_json(self.a.out / f"{row['name']}.report.json") or {}
         row["counts"] = document.get("counts", {})
         row["rounds"] = document.get("rounds")
         row.update(fineness(document))
+        row["cause"] = f"mesh: {made['cause']}: {made['message'][:160]}" if made["status"] != "valid" else ""
 
-    def finish(self, body, mesh, name, row):
-        if self.a.gmsh and row["size"] > 0:
-            self.compare(body, row["size"], name, row)
+    def judge_row(self, row):
+        """Checks, judges and compares what was meshed."""
+        mesh = self.a.out / f"{row['name']}.msh"
+        if not row["cause"]:
+            self.check(row["body"], mesh, row["name"], row)
+        if self.a.gmsh and row["size"]:
+            self.compare(row["body"], row["size"], row["name"], row)
         if row["status"] == "valid" and not self.a.keep:
             mesh.unlink(missing_ok=True)
         return row
@@ -356,13 +325,13 @@ def main():
     bodies = [line for line in bodies if line and not line.startswith("#")]
     divisors = [float(d) for d in arguments.divide.split(",")]
     corpus = Corpus(arguments)
-    tasks = [(body, divisor) for body in bodies for divisor in divisors]
-    made = {divisor: corpus.mesh_all(bodies, divisor) for divisor in divisors}
+    planned = [corpus.row(body, divisor) for body in bodies for divisor in divisors]
+    corpus.mesh_all(planned)
     rows = []
     with open(arguments.out / "results.jsonl", "w") as results, \
             concurrent.futures.ThreadPoolExecutor(max_workers=arguments.jobs) as pool:
         # In the order of the list, each as soon as those before it are done.
-        for row in pool.map(lambda task: corpus.made_by_batch(*task, made[task[1]][task[0]]), tasks):
+        for row in pool.map(corpus.judge_row, planned):
             rows.append(row)
             results.write(json.dumps(row) + "\n")
             results.flush()

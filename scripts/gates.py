@@ -1,12 +1,13 @@
 #!/usr/bin/env python3
-"""Runs the gates of thin walls, of kinds of surfaces and of half turns over the bodies that bench/make_bodies writes.
+"""Runs the gates of thin walls, of coarse meshes and of kinds of surfaces over the bodies that bench/make_bodies writes.
 
     cmake --preset bench && cmake --build --preset bench --target make_bodies curvetet
     build/bench/bench/make_bodies out/bodies
     scripts/gates.py --curvetet build/bench/apps/curvetet/curvetet --bodies out/bodies --out out/gates
 
 thin-walls: sizes are lengths, without sizes from curvature, so that a coarse mesh crosses itself unless that is prevented
-or cured. half-turns: coarse meshes of slots and ridges, likewise without sizes from curvature. kinds: every kind of surface, and holes across seams and at poles, at the box's diagonal over 5, 15 and 40.
+or cured. coarse: slots, ridges, countersinks and bores at the box's diagonal over 3, 5 and 10, likewise. kinds: every kind
+of surface, and holes across seams and at poles, at the diagonal over 5, 15 and 40.
 A mesh is valid as scripts/corpus.py says; of some bodies it must be coarse, too. Exit code 1 if one run fails.
 """
 import argparse
@@ -26,7 +27,7 @@ KIND_PREFIXES = ("kind_", "seam_", "pole_")
 
 def parse_arguments():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--gate", choices=["thin-walls", "kinds", "half-turns", "all"], default="all")
+    parser.add_argument("--gate", choices=[*GATES, "all"], default="all")
     parser.add_argument("--coarsest", action="store_true", help="only the coarsest size of each body")
     parser.add_argument("--bodies", required=True, type=pathlib.Path, help="folder that make_bodies has filled")
     parser.add_argument("--curvetet", required=True, type=pathlib.Path)
@@ -44,39 +45,37 @@ def sizes_of(arguments, coarse_to_fine):
     return coarse_to_fine[:1] if arguments.coarsest else coarse_to_fine
 
 
-def corpus_with(arguments, curvature):
+def corpus_with(arguments, gate, curvature):
     settings = argparse.Namespace(**vars(arguments))
+    settings.out = arguments.out / gate
+    settings.out.mkdir(parents=True, exist_ok=True)
     settings.root, settings.list, settings.gmsh = arguments.bodies, arguments.bodies / "-", False
     settings.curvature, settings.cad_options = curvature, ""
     return Corpus(settings)
 
 
-def thin_wall_tasks(arguments):
-    corpus = corpus_with(arguments, 0)
+def thin_walls(arguments, corpus):
     plan = [(body, size) for body in SHELLS_AND_TUBES for size in sizes_of(arguments, [8.0, 5.0, 3.0])]
     plan += [(body, size) for body in OTHER_WALLS for size in sizes_of(arguments, [6.0, 3.0, 1.0])]
-    for body, size in plan:
-        row = {"gate": "thin-walls", "body": f"{body}.brep", "at": f"{size:g}", "most": MOST_TRIANGLES.get((body, size))}
-        row.update(status="failed", cause="")
-        yield lambda row=row, size=size: corpus.at_size(row["body"], size, f"{row['body']}.{size:g}", row)
+    return [{"body": f"{body}.brep", "at": f"{size:g}", "size": size, "name": f"{body}.{size:g}", "status": "failed",
+             "cause": "", "most": MOST_TRIANGLES.get((body, size))} for body, size in plan]
 
 
-def kind_tasks(arguments):
-    corpus = corpus_with(arguments, 12)
-    for path in sorted(arguments.bodies.glob("*.brep")):
-        if not path.name.startswith(KIND_PREFIXES):
-            continue
-        for divisor in sizes_of(arguments, [5.0, 15.0, 40.0]):
-            yield lambda body=path.name, divisor=divisor: {
-                "gate": "kinds", "at": f"D/{divisor:g}", **corpus.one(body, divisor)}
+def at_divisors(arguments, corpus, prefixes, divisors):
+    return [{"at": f"D/{divisor:g}", **corpus.row(path.name, divisor)}
+            for path in sorted(arguments.bodies.glob("*.brep")) if path.name.startswith(prefixes)
+            for divisor in sizes_of(arguments, divisors)]
 
 
-def half_turn_tasks(arguments):
-    corpus = corpus_with(arguments, 0)
-    for path in sorted(arguments.bodies.glob("half_*.brep")):
-        for divisor in sizes_of(arguments, [3.0, 5.0, 10.0]):
-            yield lambda body=path.name, divisor=divisor: {
-                "gate": "half-turns", "at": f"D/{divisor:g}", **corpus.one(body, divisor)}
+def kinds(arguments, corpus):
+    return at_divisors(arguments, corpus, KIND_PREFIXES, [5.0, 15.0, 40.0])
+
+
+def coarse(arguments, corpus):
+    return at_divisors(arguments, corpus, ("coarse_",), [3.0, 5.0, 10.0])
+
+
+GATES = {"thin-walls": (thin_walls, 0), "coarse": (coarse, 0), "kinds": (kinds, 12)}  # with elements per turn
 
 
 def hold_to_most(row):
@@ -96,19 +95,21 @@ def main():
     for number_of_signal in (signal.SIGINT, signal.SIGTERM):
         signal.signal(number_of_signal, end_all)
     arguments.out.mkdir(parents=True, exist_ok=True)
-    tasks = []
-    for gate, of_gate in (("thin-walls", thin_wall_tasks), ("half-turns", half_turn_tasks), ("kinds", kind_tasks)):
-        if arguments.gate in (gate, "all"):
-            tasks += of_gate(arguments)
     rows = []
     print(f"{'status':8}  {'gate':10}  {'body':28} {'size':>5}  {'triang.':>7}  {'tets':>7}  {'time':>7}  cause")
     with open(arguments.out / "results.jsonl", "w") as results, \
             concurrent.futures.ThreadPoolExecutor(max_workers=arguments.jobs) as pool:
-        for row in pool.map(lambda task: hold_to_most(task()), tasks):
-            rows.append(row)
-            results.write(json.dumps(row) + "\n")
-            results.flush()
-            print_row(row)
+        for gate, (plan, curvature) in GATES.items():
+            if arguments.gate not in (gate, "all"):
+                continue
+            corpus = corpus_with(arguments, gate, curvature)
+            planned = [{"gate": gate, **row} for row in plan(arguments, corpus)]
+            corpus.mesh_all(planned)
+            for row in map(hold_to_most, pool.map(corpus.judge_row, planned)):
+                rows.append(row)
+                results.write(json.dumps(row) + "\n")
+                results.flush()
+                print_row(row)
     print()
     for gate in sorted({row["gate"] for row in rows}):
         here = [row for row in rows if row["gate"] == gate]

@@ -327,7 +327,10 @@ CLI::App* describe_batch(CLI::App& app, BatchCommand& command) {
   CLI::App* batch = app.add_subcommand(
       "batch",
       "Mesh many bodies, each in a process of its own; goes on where an earlier one ended. Exit code 5 if any failed");
-  batch->add_option("SOURCE", command.source, "folder of CAD files, or a list: a path a line, relative to the list")
+  batch
+      ->add_option("SOURCE", command.source,
+                   "folder of CAD files, or a list: in each line a path, relative to the list, and options for "
+                   "that body alone, separated by tabs")
       ->required()
       ->type_name("LIST|DIR");
   batch
@@ -357,25 +360,30 @@ CLI::App* describe_batch(CLI::App& app, BatchCommand& command) {
   return batch;
 }
 
-/// Each body's program would refuse them; better once, before any work.
-void check_mesh_options(const BatchCommand& command) {
-  for (const std::string& option : command.mesh_options) {
+}  // namespace
+
+// Each body's program would refuse them; better once, before any work.
+std::optional<std::string> wrong_batch_options(const std::vector<std::string>& options, const std::string& format) {
+  for (const std::string& option : options) {
     const std::string word = option.substr(0, option.find('='));
     for (const char* own : {"-o", "--output", "--report", "--time-limit", "--memory-limit", "-h", "--help"})
-      if (word == own) refuse(word + " cannot be handed to the bodies of a batch");
+      if (word == own) return word + " cannot be handed to the bodies of a batch";
   }
   CLI::App app;
   RawMesh raw;
   MeshCommand mesh;
   describe_mesh(app, raw, mesh);
-  std::vector<std::string> words{"mesh", "INPUT", "-o", "OUTPUT." + command.format};
-  words.insert(words.end(), command.mesh_options.begin(), command.mesh_options.end());
+  std::vector<std::string> words{"mesh", "INPUT", "-o", "OUTPUT." + format};
+  words.insert(words.end(), options.begin(), options.end());
   std::reverse(words.begin(), words.end());  // as CLI11 takes them
-  app.parse(words);
-  finish_mesh(raw, mesh);
+  try {
+    app.parse(words);
+    finish_mesh(raw, mesh);
+  } catch (const CLI::ParseError& error) {
+    return error.what();
+  }
+  return std::nullopt;
 }
-
-}  // namespace
 
 Arguments parse(int argc, char** argv) {
   CLI::App app("curvetet: valid, conformal, labelled tetrahedral meshes of CAD bodies with curved boundaries.");
@@ -400,7 +408,9 @@ Arguments parse(int argc, char** argv) {
     app.parse(argc, argv);
     if (mesh_app->parsed()) finish_mesh(raw_mesh, mesh);
     if (picture_app->parsed()) finish_picture(raw_picture, picture);
-    if (batch_app->parsed()) check_mesh_options(batch);
+    if (batch_app->parsed()) {
+      if (const auto wrong = wrong_batch_options(batch.mesh_options, batch.format)) refuse(*wrong);
+    }
   } catch (const CLI::ParseError& error) {
     if (error.get_exit_code() == 0) {
       app.exit(error, std::cout, std::cerr);

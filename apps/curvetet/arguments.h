@@ -69,6 +69,9 @@ struct Arguments {
   int exit_code = 0;
 };
 
+/// What is wrong with options for the meshes of a batch, in words; nothing if they are right.
+std::optional<std::string> wrong_batch_options(const std::vector<std::string>& options, const std::string& format);
+
 /// Parses and checks the command line; help goes to standard output, complaints to standard error.
 Arguments parse(int argc, char** argv);
 

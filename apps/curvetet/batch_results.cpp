@@ -30,13 +30,21 @@ Error unwritable(const std::string& path, const std::string& why) {
 }
 
 json to_json(const BatchRow& row) {
-  json line{{"body", row.body},           {"status", row.valid ? "valid" : "failed"},
-            {"exit", row.exit},           {"cause", row.cause},
-            {"message", row.message},     {"entities", row.entities},
-            {"seconds", row.seconds},     {"size", row.size},
-            {"points", row.points},       {"tets", row.tets},
-            {"triangles", row.triangles}, {"worst_dihedral", row.worst_dihedral},
-            {"mesh", row.mesh},           {"report", row.report}};
+  json line{{"body", row.body},
+            {"options", row.options},
+            {"status", row.valid ? "valid" : "failed"},
+            {"exit", row.exit},
+            {"cause", row.cause},
+            {"message", row.message},
+            {"entities", row.entities},
+            {"seconds", row.seconds},
+            {"size", row.size},
+            {"points", row.points},
+            {"tets", row.tets},
+            {"triangles", row.triangles},
+            {"worst_dihedral", row.worst_dihedral},
+            {"mesh", row.mesh},
+            {"report", row.report}};
   line["where"] = row.where ? json::array({row.where->x, row.where->y, row.where->z}) : json();
   return line;
 }
@@ -45,6 +53,7 @@ json to_json(const BatchRow& row) {
 BatchRow from_json(const json& line) {
   BatchRow row;
   row.body = line.at("body").get<std::string>();
+  row.options = line.value("options", std::vector<std::string>());
   row.valid = line.at("status").get<std::string>() == "valid";
   row.cause = line.value("cause", "");
   row.seconds = line.value("seconds", 0.0);
@@ -142,7 +151,7 @@ Status BatchResults::read_rows() {
     try {
       rows_.push_back(from_json(json::parse(text.begin() + static_cast<std::ptrdiff_t>(begin),
                                             text.begin() + static_cast<std::ptrdiff_t>(end))));
-      done_.insert(rows_.back().body);
+      done_.insert({rows_.back().body, rows_.back().options});
     } catch (const json::exception&) {
       return Error{ErrorCode::file_unreadable,
                    fmt::format("{} is damaged after {} lines", path, rows_.size()),
@@ -166,8 +175,14 @@ Status BatchResults::add(const BatchRow& row) {
   }
   if (::fsync(file_) != 0 && errno != EINVAL) return unwritable(in(folder_, "results.jsonl"), std::strerror(errno));
   rows_.push_back(row);
-  done_.insert(row.body);
+  done_.insert({row.body, row.options});
   return Done{};
+}
+
+void BatchResults::keep_only(const std::vector<BatchBody>& bodies) {
+  std::set<Key> wanted;
+  for (const BatchBody& body : bodies) wanted.insert({body.name, body.options});
+  std::erase_if(rows_, [&](const BatchRow& row) { return wanted.count({row.body, row.options}) == 0; });
 }
 
 std::size_t BatchResults::valid() const {

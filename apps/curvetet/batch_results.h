@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "batch_bodies.h"
 #include "curvetet/error.h"
 
 namespace curvetet::cli {
@@ -14,6 +15,7 @@ namespace curvetet::cli {
 /// What became of one body.
 struct BatchRow {
   std::string body, mesh, report;
+  std::vector<std::string> options;  ///< for this body alone
   bool valid = false;
   int exit = 0;         ///< -1: no exit code
   std::string cause;    ///< the first error's code, or "did not end in time", "killed by ...", empty if valid
@@ -42,7 +44,9 @@ class BatchResults {
   Status open(const std::string& folder, const std::vector<std::string>& options, bool restart);
   /// Appends a row and waits until it is on the disk.
   Status add(const BatchRow& row);
-  bool is_done(const std::string& body) const { return done_.count(body) > 0; }
+  bool is_done(const BatchBody& body) const { return done_.count({body.name, body.options}) > 0; }
+  /// Leaves out the rows of what is not among the bodies: of an earlier list for the same folder.
+  void keep_only(const std::vector<BatchBody>& bodies);
   const std::vector<BatchRow>& rows() const { return rows_; }
   /// Counts by cause, and of the valid ones, into summary.json.
   Status write_summary(std::size_t bodies) const;
@@ -50,6 +54,8 @@ class BatchResults {
   std::size_t valid() const;
 
  private:
+  using Key = std::pair<std::string, std::vector<std::string>>;  ///< name and options
+
   Status lock();
   Status keep_options(const std::vector<std::string>& options, bool restart);
   Status read_rows();
@@ -57,7 +63,7 @@ class BatchResults {
   std::string folder_;
   int lock_ = -1, file_ = -1;
   std::vector<BatchRow> rows_;
-  std::set<std::string> done_;
+  std::set<Key> done_;
 };
 
 }  // namespace curvetet::cli

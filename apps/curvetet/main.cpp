@@ -5,8 +5,8 @@
 #include <exception>
 #include <new>
 
+#include "base/child_program.h"
 #include "cad/load.h"
-#include "child.h"
 #include "commands.h"
 
 namespace {
@@ -33,7 +33,7 @@ int fail(const char* what) {
 
 int main(int argc, char** argv) {
   try {
-    curvetet::cli::end_with_parent();
+    curvetet::end_with_parent();
     // The helper that reads CAD files is this same program, started again by the library.
     if (argc > 1 && std::strcmp(argv[1], "--cad-helper") == 0) return curvetet::run_cad_helper(argc, argv);
     return run(argc, argv);

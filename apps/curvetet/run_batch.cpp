@@ -12,9 +12,9 @@
 #include <thread>
 #include <vector>
 
+#include "base/child_program.h"
 #include "batch_bodies.h"
 #include "batch_results.h"
-#include "child.h"
 #include "commands.h"
 #include "curvetet/curvetet.h"
 #include "curvetet/formats.h"
@@ -62,11 +62,16 @@ class Batch {
     auto bodies = find_bodies(command_.source);
     if (!bodies) return show_error(bodies.error());
     bodies_ = std::move(bodies.value());
+    for (const BatchBody& body : bodies_) {
+      if (const auto wrong = wrong_batch_options(body.options, command_.format))
+        return show_error({ErrorCode::bad_option, body.name + ": " + *wrong, {}, {}, "options are separated by tabs"});
+    }
     if (const Status opened = results_.open(command_.out, all_options(), command_.restart); !opened)
       return show_error(opened.error());
+    results_.keep_only(bodies_);
     const CancelOnSignal signals(context_);
     for (const BatchBody& body : bodies_)
-      if (!results_.is_done(body.name)) waiting_.push_back(&body);
+      if (!results_.is_done(body)) waiting_.push_back(&body);
     say_what_is_done_already();
     std::reverse(waiting_.begin(), waiting_.end());  // taken from the end
     const Status status = work();
@@ -136,6 +141,7 @@ class Batch {
     waiting_.pop_back();
     Running r;
     r.row.body = body.name;
+    r.row.options = body.options;
     r.row.mesh = body.stem + "." + command_.format;
     r.row.report = body.stem + ".json";
     r.log = in_folder(body.stem + ".log");
@@ -157,7 +163,8 @@ class Batch {
       arguments.emplace_back("--memory-limit");
       arguments.push_back(std::to_string(command_.memory_limit));
     }
-    arguments.insert(arguments.end(), command_.mesh_options.begin(), command_.mesh_options.end());
+    for (const auto* options : {&command_.mesh_options, &body.options})
+      arguments.insert(arguments.end(), options->begin(), options->end());
     r.begin = Clock::now();
     r.child = std::make_unique<ChildProgram>(own_program(), arguments, r.log,
                                              std::vector<std::string>{end_with_parent_variable()});

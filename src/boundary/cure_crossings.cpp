@@ -17,8 +17,6 @@ constexpr std::size_t kPointsPerPair = 8;
 // More crossings than this are no thin wall but a surface mesh gone wrong.
 constexpr std::size_t kPairsPerTriangle = 4;
 
-// Cosine of the angle to the surface's normal, 84 degrees, from which a facet counts as folded.
-constexpr double kFolded = 0.1;
 // The surface near a facet is looked at where the mean normal is off by more than 26 degrees, or the facet by this
 // share of its longest edge.
 constexpr double kStraight = 0.9;
@@ -84,7 +82,8 @@ class CrossingCure {
       double cosine = facing(conjoint_, t.face, t.triangle);
       if (cosine < kStraight ||
           deviation(conjoint_, t.face, t.triangle) > kFar * longest_edge(conjoint_.vertices(), t.vertices))
-        cosine = std::min(cosine, facing_at_foot(conjoint_, t.face, t.triangle));
+        cosine = std::min(
+            cosine, facing_at_foot(conjoint_, t.face, conjoint_.boundary().faces[t.face].triangle(t.triangle).node));
       if (cosine < kFolded) folds.push_back(i);
     }
     return folds;

@@ -17,6 +17,7 @@
 
 #include "boundary/refine_surface.h"
 #include "predicates/predicates.h"
+#include "quality/measures.h"
 
 namespace curvetet {
 
@@ -27,9 +28,6 @@ NodePair ordered(NodeId a, NodeId b) { return a < b ? NodePair{a, b} : NodePair{
 
 /// Sine of a triangle's least angle, below which it counts as flat: half a degree.
 constexpr double kFlatSine = 0.0087;
-
-/// Cosine of the angle to the surface's normal, 84 degrees, from which a facet counts as folded.
-constexpr double kFolded = 0.1;
 
 class March {
  public:
@@ -324,12 +322,9 @@ class March {
     });
   }
 
-  /// Of the angles in space.
   double least_sine(const NodeTriple& n) const {
     const auto at = [&](std::size_t k) { return conjoint_.vertices().position(mesh_.node(n[k]).vertex); };
-    std::array<double, 3> edges{distance(at(0), at(1)), distance(at(1), at(2)), distance(at(2), at(0))};
-    std::sort(edges.begin(), edges.end());
-    return edges[1] > 0 ? norm(cross(at(1) - at(0), at(2) - at(0))) / (edges[1] * edges[2]) : 0;
+    return triangle_least_sine(at(0), at(1), at(2));
   }
 
   bool all_edges_full(const std::vector<NodeTriple>& triangles) const {

@@ -28,11 +28,10 @@ struct Places {
   std::array<Vec3, 3> p;
 };
 
-Places places_of(const Conjoint& conjoint, FaceId face, TriangleId triangle) {
-  const FaceMesh& mesh = conjoint.boundary().faces[face];
+Places places_of(const Conjoint& conjoint, FaceId face, const std::array<NodeId, 3>& nodes) {
   Places at;
   for (std::size_t k = 0; k < 3; ++k) {
-    const FaceNode& node = mesh.node(mesh.triangle(triangle).node[k]);
+    const FaceNode& node = conjoint.boundary().faces[face].node(nodes[k]);
     at.q[k] = node.q;
     at.p[k] = conjoint.vertices().position(node.vertex);
   }
@@ -170,23 +169,15 @@ double deviation(const Conjoint& conjoint, FaceId face, TriangleId triangle) {
 }
 
 double facing(const Conjoint& conjoint, FaceId face, TriangleId triangle) {
-  const Places at = places_of(conjoint, face, triangle);
-  return facing(*conjoint.model().faces[face].surface, conjoint.boundary().faces[face].chart, at.q, at.p);
-}
-
-double facing_at_foot(const Conjoint& conjoint, FaceId face, TriangleId triangle) {
-  return facing_at_foot(conjoint, face, conjoint.boundary().faces[face].triangle(triangle).node);
+  const FaceMesh& mesh = conjoint.boundary().faces[face];
+  const Places at = places_of(conjoint, face, mesh.triangle(triangle).node);
+  return facing(*conjoint.model().faces[face].surface, mesh.chart, at.q, at.p);
 }
 
 double facing_at_foot(const Conjoint& conjoint, FaceId face, const std::array<NodeId, 3>& nodes) {
   const FaceMesh& mesh = conjoint.boundary().faces[face];
   const Surface& surface = *conjoint.model().faces[face].surface;
-  std::array<Vec2, 3> q;
-  std::array<Vec3, 3> p;
-  for (std::size_t k = 0; k < 3; ++k) {
-    q[k] = mesh.node(nodes[k]).q;
-    p[k] = conjoint.vertices().position(mesh.node(nodes[k]).vertex);
-  }
+  const auto [q, p] = places_of(conjoint, face, nodes);
   const Vec3 centroid = (1.0 / 3) * (p[0] + p[1] + p[2]);
   double nearest = std::numeric_limits<double>::infinity();
   std::optional<Vec2> foot;

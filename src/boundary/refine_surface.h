@@ -31,9 +31,10 @@ double longest_edge(const VertexStore& vertices, const std::array<VertexId, 3>& 
 double deviation(const Conjoint& conjoint, FaceId face, TriangleId triangle);
 /// As facing in boundary/criteria.h, of a triangle of t_3d. A fold has it at or below zero.
 double facing(const Conjoint& conjoint, FaceId face, TriangleId triangle);
+/// Cosine of the angle to the surface's normal, 84 degrees, from which a facet counts as folded.
+inline constexpr double kFolded = 0.1;
 /// Cosine of the angle between a triangle's normal and the surface's where that is nearest to its centroid, searched
 /// from the same place of the chart and from the corners, as the final check does; 1 if no such place is found.
-double facing_at_foot(const Conjoint& conjoint, FaceId face, TriangleId triangle);
 double facing_at_foot(const Conjoint& conjoint, FaceId face, const std::array<NodeId, 3>& nodes);
 /// Distance from the middle of a segment to the curve at the middle parameter.
 double segment_deviation(const Conjoint& conjoint, EdgeId edge, VertexId a, VertexId b);

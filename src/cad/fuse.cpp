@@ -78,19 +78,16 @@ class Fuse {
     return Fusing::failed;
   }
 
-  /// Fuses neighbours first, then what became of them: the kernel looks for each pair of faces at all that meets
-  /// anywhere, so a hundred solids at once take it a minute.
+  /// Fuses neighbours first, then what became of them: the kernel holds each pair of faces that meet against all that
+  /// meet anywhere, so a hundred solids at once take it a minute.
   bool build() {
-    std::vector<TopTools_ListOfShape> groups = groups_of_neighbours();
-    while (groups.size() > 1) {
-      TopTools_ListOfShape whole;
-      for (const TopTools_ListOfShape& group : groups) {
-        if (!fuse(group)) return false;
-        whole.Append(builders_.back().Shape());
-      }
-      groups.assign(1, whole);
+    const std::vector<TopTools_ListOfShape> groups = groups_of_neighbours();
+    TopTools_ListOfShape fused;
+    for (const TopTools_ListOfShape& group : groups) {
+      if (!fuse(group)) return false;
+      fused.Append(builders_.back().Shape());
     }
-    return fuse(groups.front());
+    return groups.size() == 1 || fuse(fused);
   }
 
   bool fuse(const TopTools_ListOfShape& shapes) {

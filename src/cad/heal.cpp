@@ -109,8 +109,8 @@ void fix_shape(CadBody& body) {
   replace_shape(body, fix->Shape(), [&](const TopoDS_Shape& part) { return context->Apply(part); });
 }
 
-/// Imprints and merges solids that touch; the result is kept unless it is worse. An error if solids
-/// overlap that must not.
+/// Imprints and merges solids that touch; the result is kept unless it is worse. An error if solids overlap
+/// that must not.
 Status fuse(Attempt& best, const std::string& source, Overlaps overlaps) {
   CadBody fused = best.body;
   const Result<Fusing> fusing = fuse_touching(fused, overlaps, source);

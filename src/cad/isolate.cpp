@@ -1,7 +1,6 @@
-// The helper is spawned (not forked: a fork of a process with threads may not call the CAD kernel), with its output
-// thrown away, and polled, so that a cancel takes effect within milliseconds. It limits its own memory and processor
-// time, since posix_spawn cannot. A variable in its environment keeps a program that was started by mistake from
-// starting helpers too.
+// The helper's output is thrown away, and it is polled, so that a cancel takes effect within milliseconds. It limits
+// its own memory and processor time, since posix_spawn cannot. A variable in its environment keeps a program that was
+// started by mistake from starting helpers too.
 #include "cad/isolate.h"
 
 #include <fcntl.h>
@@ -21,16 +20,11 @@
 #include <thread>
 #include <vector>
 
-#ifdef __linux__
-#include <sys/prctl.h>
-#endif
-
+#include "base/child_program.h"
 #include "cad/guard.h"
 #include "cad/heal.h"
 #include "cad/read.h"
 #include "cad/transfer.h"
-
-extern char** environ;
 
 namespace curvetet {
 namespace {
@@ -61,57 +55,6 @@ class TemporaryFolder {
 
  private:
   std::string path_;
-};
-
-/// A child process; killed when it goes out of scope unfinished.
-class Child {
- public:
-  Child(const std::string& program, std::vector<std::string> arguments) {
-    std::vector<char*> argv;
-    argv.reserve(arguments.size() + 1);
-    for (std::string& argument : arguments) argv.push_back(argument.data());
-    argv.push_back(nullptr);
-    std::string marker = std::string(kHelperVariable) + "=1";
-    std::vector<char*> environment;
-    for (char** variable = environ; variable != nullptr && *variable != nullptr; ++variable) {
-      environment.push_back(*variable);
-    }
-    environment.push_back(marker.data());
-    environment.push_back(nullptr);
-    posix_spawn_file_actions_t actions;
-    posix_spawn_file_actions_init(&actions);
-    posix_spawn_file_actions_addopen(&actions, STDIN_FILENO, "/dev/null", O_RDONLY, 0);
-    posix_spawn_file_actions_addopen(&actions, STDOUT_FILENO, "/dev/null", O_WRONLY, 0);
-    posix_spawn_file_actions_addopen(&actions, STDERR_FILENO, "/dev/null", O_WRONLY, 0);
-    started_ = posix_spawn(&id_, program.c_str(), &actions, nullptr, argv.data(), environment.data()) == 0;
-    posix_spawn_file_actions_destroy(&actions);
-  }
-  ~Child() {
-    if (started_ && !finished_) {
-      kill(id_, SIGKILL);
-      wait(0);
-    }
-  }
-  Child(const Child&) = delete;
-  Child& operator=(const Child&) = delete;
-
-  bool started() const { return started_; }
-  /// True once it has ended.
-  bool poll() { return finished_ || wait(WNOHANG); }
-  /// The signal that ended it, or 0.
-  int signal_number() const { return WIFSIGNALED(status_) ? WTERMSIG(status_) : 0; }
-
- private:
-  bool wait(int flags) {
-    const pid_t ended = waitpid(id_, &status_, flags);
-    // Without a child to wait for (a host that ignores SIGCHLD) its files tell how it ended.
-    if (ended == id_ || (ended < 0 && errno == ECHILD)) finished_ = true;
-    return finished_;
-  }
-
-  pid_t id_ = 0;
-  int status_ = 0;
-  bool started_ = false, finished_ = false;
 };
 
 std::string seconds_text(double seconds) { return std::to_string(static_cast<long>(std::llround(seconds))) + " s"; }
@@ -149,9 +92,6 @@ void limit_this_process(std::size_t memory, double seconds) {
   (void)memory;
 #endif
   if (seconds > 0) limit(RLIMIT_CPU, static_cast<rlim_t>(std::ceil(seconds)) + 1);
-#ifdef __linux__
-  prctl(PR_SET_PDEATHSIG, SIGKILL);
-#endif
 }
 
 }  // namespace
@@ -180,9 +120,11 @@ Result<CadBody> read_isolated(const std::string& path, const std::string& helper
   if (folder.path().empty()) return Error{ErrorCode::output_unwritable, "cannot make a temporary folder"};
   const std::string out_path = folder.path() + "/shape.bin";
   const double allowed = options.isolate_time_limit;
-  Child child(helper,
-              {helper, kHelperFlag, path, out_path, options.input_unit, std::to_string(options.isolate_memory_limit),
-               std::to_string(allowed), options.overlaps == Overlaps::split ? kSplit : kRefuse});
+  ChildProgram child(
+      helper,
+      {helper, kHelperFlag, path, out_path, options.input_unit, std::to_string(options.isolate_memory_limit),
+       std::to_string(allowed), options.overlaps == Overlaps::split ? kSplit : kRefuse},
+      "/dev/null", {std::string(kHelperVariable) + "=1", end_with_parent_variable()});
   if (!child.started()) return Error{ErrorCode::bad_option, "cannot start the helper program " + helper};
   const auto start = Clock::now();
   auto pause = std::chrono::milliseconds(1);
@@ -195,15 +137,15 @@ Result<CadBody> read_isolated(const std::string& path, const std::string& helper
     pause = std::min(2 * pause, std::chrono::milliseconds(16));
   }
   if (context.should_stop()) return context.stop_error("load");
-  if (child.signal_number() == SIGXCPU) return timed_out(path, allowed);
-  if (!transfer_announced(out_path) && child.signal_number() == 0) {
+  if (child.signal() == SIGXCPU) return timed_out(path, allowed);
+  if (!transfer_announced(out_path) && child.signal() == 0) {
     return Error{ErrorCode::bad_option,
                  helper + " does not serve as helper of this version",
                  {},
                  {},
                  "set the helper to the curvetet program, or read without isolation"};
   }
-  if (child.signal_number() != 0) return crashed(path, child.signal_number());
+  if (child.signal() != 0) return crashed(path, child.signal());
   Result<CadBody> body = read_transfer(out_path);
   if (!body && body.error().code == ErrorCode::reader_crashed) return crashed(path, 0);
   return body;
@@ -213,6 +155,7 @@ int run_cad_helper(int argc, char** argv) {
   constexpr int kUsage = 2, kUnwritable = 3;
   if (argc != 8 || std::string(argv[1]) != kHelperFlag) return kUsage;
   const std::string path = argv[2], out_path = argv[3], unit = argv[4];
+  end_with_parent();
   limit_this_process(std::strtoull(argv[5], nullptr, 10), std::strtod(argv[6], nullptr));
   if (!announce_transfer(out_path)) return kUnwritable;
   Result<CadBody> body = read_body(path, unit);

@@ -31,7 +31,7 @@
 namespace curvetet {
 namespace {
 
-/// Of the body's diagonal: overlap_depth.
+/// overlap_depth over the body's diagonal.
 constexpr double kDepth = 1e-4;
 /// Points that are classified, at most: a second or two.
 constexpr std::size_t kLargestEffort = 20000;

@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <set>
 
 #include "boundary/fill_holes.h"
 #include "boundary/simplicial.h"
@@ -119,7 +120,9 @@ class BodyMesher {
   /// Recovery puts points where the surface meshes had none, and two sheets may share an edge then that they must not.
   Failures shared_edges(const BodyMesh& body) const {
     Failures failures;
+    std::set<std::pair<VertexId, VertexId>> told;
     for (const Offence& offence : find_offences(model_, body.boundary)) {
+      if (!told.insert(std::minmax(offence.a, offence.b)).second) continue;
       const Vec3 a = body.vertices.position(offence.a), b = body.vertices.position(offence.b);
       failures.push_back({{offence.face}, 0.5 * (a + b), 0.5 * distance(a, b), describe(offence, model_)});
     }

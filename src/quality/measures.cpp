@@ -71,4 +71,10 @@ Vec3 equatorial_centre(Vec3 a, Vec3 b, Vec3 c) {
 
 double triangle_area(Vec3 a, Vec3 b, Vec3 c) { return 0.5 * norm(cross(b - a, c - a)); }
 
+double triangle_least_sine(Vec3 a, Vec3 b, Vec3 c) {
+  std::array<double, 3> edges{distance(a, b), distance(b, c), distance(c, a)};
+  std::sort(edges.begin(), edges.end());
+  return edges[1] > 0 ? 2 * triangle_area(a, b, c) / (edges[1] * edges[2]) : 0;
+}
+
 }  // namespace curvetet

@@ -17,5 +17,7 @@ Vec3 circumcentre(Vec3 a, Vec3 b, Vec3 c, Vec3 d);
 /// Centre of the smallest sphere through three points.
 Vec3 equatorial_centre(Vec3 a, Vec3 b, Vec3 c);
 double triangle_area(Vec3 a, Vec3 b, Vec3 c);
+/// Of the angles of a triangle: twice its area over the product of the two longer edges. 0 for a degenerate one.
+double triangle_least_sine(Vec3 a, Vec3 b, Vec3 c);
 
 }  // namespace curvetet

@@ -1,7 +1,7 @@
 // Strips: a face of width w between two of its edges, with elements of size h beside it.
 //
 // A tet that has an edge across the strip and a facet beside it sees that edge under an angle of about w / h, whatever
-// is done to it. Below h = 60 w that is a degree, with which the worst of the tets there stay above half a degree. Such
+// is done to it. At h = 50 w that is a degree, with which the worst of the tets there stay above half a degree. Such
 // a size is asked for only where a fifth of the field's size reaches it: a strip narrower still (a sliver left by a
 // Boolean operation) would be meshed as finely all along its length, which nobody who asked for coarse elements wants.
 //

@@ -16,7 +16,7 @@ struct StripInput {
   const std::vector<EdgeSamples>& edges;
 };
 
-/// Sources along the edges of faces that are narrower than 1/60 of the field's size, but not narrower than 1/300; in an
+/// Sources along the edges of faces that are narrower than 1/50 of the field's size, but not narrower than 1/250; in an
 /// order that does not depend on the number of threads. Fewer, if the context wants to stop. A projection for each
 /// sample of an edge and each other edge of the face within reach.
 std::vector<SizeSource> strip_sources(const StripInput& input, Context& context);

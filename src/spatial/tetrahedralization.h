@@ -104,8 +104,6 @@ class Tetrahedralization {
 
   /// To be called by code that changes the complex by flips: keeps vertex_tet_ right for the vertices of t.
   void touch(TetId t);
-  /// To be called when the last tet of a vertex has gone.
-  void forget(VertexId v) { vertex_tet_[v] = TetId(); }
 
  private:
   friend class CavitySearch;

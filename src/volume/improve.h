@@ -22,7 +22,7 @@ struct ImproveOptions {
 };
 
 struct ImproveResult {
-  std::size_t edge_removals = 0, face_removals = 0, moves = 0, inserted = 0, removed = 0;
+  std::size_t edge_removals = 0, face_removals = 0, moves = 0, inserted = 0;
   std::size_t relocks = 0;  ///< pairs of locked facets exchanged for the other diagonal
   double worst_before = 0;  ///< degrees, the arc sine of the least sine of a dihedral angle
   double worst_after = 0;

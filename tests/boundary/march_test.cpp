@@ -10,8 +10,8 @@
 #include <optional>
 #include <set>
 
-#include "boundary/refine_surface.h"
 #include "predicates/predicates.h"
+#include "quality/measures.h"
 #include "spatial/flips.h"
 #include "support/bodies.h"
 #include "support/run_boundary.h"
@@ -166,12 +166,7 @@ TEST(March, TakesNothingThatIsLockedForAnotherFace) {
 
 double least_sine(const BoundaryRun& run, const FaceMesh& mesh, const NodeTriple& n) {
   const auto at = [&](std::size_t k) { return run.vertices.position(mesh.node(n[k]).vertex); };
-  double least = 1;
-  for (std::size_t k = 0; k < 3; ++k) {
-    const Vec3 a = at((k + 1) % 3) - at(k), b = at((k + 2) % 3) - at(k);
-    least = std::min(least, norm(cross(a, b)) / (norm(a) * norm(b)));
-  }
-  return least;
+  return triangle_least_sine(at(0), at(1), at(2));
 }
 
 // Three neighbours on a finely divided circle are a flat ear of the disk, which flips in space may have made a facet.
@@ -197,46 +192,6 @@ TEST(March, TakesNoFlatEarWhereThereWasNone) {
       EXPECT_GT(least_sine(*run, mesh, n), 0.0087);
   }
   EXPECT_GT(ears, 0u) << "or the test says nothing";
-}
-
-/// Is the edge one of another face's mesh, too, and no segment?
-bool is_shared(const BoundaryRun& run, FaceId face, VertexId a, VertexId b) {
-  if (a == b || run.conjoint->segment_edge(a, b).valid()) return false;
-  for (std::size_t g = 0; g < run.boundary.faces.size(); ++g) {
-    if (FaceId(g) == face) continue;
-    const FaceMesh& mesh = run.boundary.faces[FaceId(g)];
-    for (NodeId m : mesh.nodes_of(a))
-      for (NodeId n : mesh.nodes_of(b))
-        if (mesh.find_edge(m, n)) return true;
-  }
-  return false;
-}
-
-// Over a coarse rim both sides of a lens, or the side and the end of a cylinder, would like to have the same chord.
-TEST(March, TakesNoEdgeOfAnotherFaceAndNoFold) {
-  std::size_t closed = 0;
-  for (const Model& model : {make_lens(5, 2), make_lens(5, 0.5), make_cylinder(2, 5), make_cylinder(5, 1),
-                             make_tube(10, 9, 30), make_tube(10, 5, 2), make_cone(2, 1, 4)}) {
-    for (double size = 0.6; size < 8; size *= 1.15) {
-      BoundaryRunOptions options{size, 0};
-      options.until = Until::tets;
-      const auto run = run_boundary(model, options);
-      ASSERT_FALSE(HasFailure());
-      for (std::size_t f = 0; f < model.faces.size(); ++f) {
-        const FaceMesh& mesh = run->boundary.faces[FaceId(f)];
-        const MarchResult m = march_face(*run->conjoint, FaceId(f));
-        if (m.missing.empty()) continue;
-        closed += m.complete ? 1 : 0;
-        for (const NodeTriple& n : m.triangles) {
-          EXPECT_GT(facing_at_foot(*run->conjoint, FaceId(f), n), 0);
-          for (std::size_t k = 0; k < 3; ++k)
-            EXPECT_FALSE(is_shared(*run, FaceId(f), mesh.node(n[k]).vertex, mesh.node(n[(k + 1) % 3]).vertex))
-                << "size " << size << " face " << f;
-        }
-      }
-    }
-  }
-  EXPECT_GT(closed, 0u) << "or the test says nothing";
 }
 
 }  // namespace

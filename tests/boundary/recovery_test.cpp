@@ -187,7 +187,8 @@ TEST(Crossings, NoFacetLooksAwayFromTheSurfaceNextToIt) {
     ASSERT_FALSE(HasFailure());
     EXPECT_TRUE(run->crossings.failures.empty());
     for (const SurfaceTriangle& t : surface_triangles(run->boundary))
-      EXPECT_GE(facing_at_foot(*run->conjoint, t.face, t.triangle), 0) << "face " << t.face.value();
+      EXPECT_GE(facing_at_foot(*run->conjoint, t.face, run->boundary.faces[t.face].triangle(t.triangle).node), 0)
+          << "face " << t.face.value();
   }
 }
 

@@ -479,24 +479,57 @@ class Batch(CommandLineTest):
     def rows_before_the_half_line(self):
         return [json.loads(line) for line in (self.out / "results.jsonl").read_text().splitlines()[:-1]]
 
+    def wait_for_program(self):
+        """The process that meshes in the folder, once there is one."""
+        for _ in range(100 * PATIENCE):
+            if programs := self.programs():
+                return programs[0]
+            time.sleep(0.01)
+        self.fail("no body is meshed")
+
+    def programs(self):
+        lines = {path: self.read(path) for path in pathlib.Path("/proc").glob("[0-9]*/cmdline")}
+        return [int(path.parent.name) for path, line in lines.items()
+                if str(self.out).encode() in line and b"mesh" in line.split(b"\0")]
+
     def test_bodies_end_with_a_batch_that_is_killed(self):
         self.name_bodies(BODIES / "plate.step")
         first = self.start(*self.LONG)
-        marker = str(self.out)
-        programs = lambda: [p for p in pathlib.Path("/proc").glob("[0-9]*/cmdline")
-                            if marker.encode() in self.read(p) and b"mesh" in self.read(p).split(b"\0")]
-        for _ in range(1000):
-            if programs():
-                break
-            time.sleep(0.01)
-        self.assertTrue(programs())
+        self.wait_for_program()
         first.kill()
         first.communicate()
         for _ in range(500):
-            if not programs():
+            if not self.programs():
                 break
             time.sleep(0.01)
-        self.assertEqual(programs(), [])
+        self.assertEqual(self.programs(), [])
+
+    def test_a_body_that_crashes_or_hangs_is_its_own_fault_alone(self):
+        for number, cause in ((signal.SIGSEGV, "killed by signal 11"), (signal.SIGSTOP, "did not end in time")):
+            with self.subTest(signal=number):
+                self.list.write_text(f"{BODIES / 'plate.step'}\t--size\tD/700\n{BODIES / 'box.step'}\n")
+                batch = self.start("--restart", "--time-limit", 2)
+                os.kill(self.wait_for_program(), number)
+                said, _ = batch.communicate(timeout=PATIENCE)
+                self.assertEqual(batch.returncode, 5)
+                self.assertIn("valid 1 of 2", said)
+                self.assertIn(cause, self.rows()[0]["cause"])
+                self.assertEqual(self.rows()[1]["status"], "valid")
+                self.assertEqual(self.programs(), [])
+
+    def test_options_of_one_body(self):
+        self.list.write_text("".join(f"{BODIES / 'box.step'}\t--size\tD/{n}\n" for n in (2, 6)))
+        self.batch(0)
+        rows = self.rows()
+        self.assertEqual([row["options"] for row in rows], [["--size", "D/2"], ["--size", "D/6"]])
+        self.assertLess(rows[0]["tets"], rows[1]["tets"])
+        self.assertNotEqual(rows[0]["mesh"], rows[1]["mesh"])
+        self.list.write_text(f"{BODIES / 'box.step'}\t--size\tD/6\n{BODIES / 'box.step'}\t--size\tD/3\n")
+        said = self.batch(0)
+        self.assertIn("1 of 2 bodies are done already", said.stderr)
+        self.assertIn("valid 2 of 2", said.stdout)  # what is no longer listed does not count
+        self.list.write_text(f"{BODIES / 'box.step'}\t--weave\n")
+        self.batch(2)
 
     @staticmethod
     def read(path):
@@ -518,7 +551,7 @@ class Batch(CommandLineTest):
         self.assertEqual(len(self.rows()), 1)
         self.assertEqual([p.name for p in self.out.iterdir() if "plate" in p.name], [])
 
-    def test_what_hangs_is_ended(self):
+    def test_time_limit_of_a_body(self):
         self.name_bodies(BODIES / "plate.step")
         self.batch(5, "--time-limit", 1, *self.LONG)
         self.assertEqual(self.rows()[0]["cause"], "time_limit")

@@ -7,7 +7,6 @@
 #include "volume/convex_bodies.h"
 #include "volume/refine.h"
 #include "volume/shape.h"
-#include "volume/vertex_removal.h"
 
 namespace curvetet::test {
 namespace {
@@ -154,26 +153,6 @@ TEST(Improve, OnlyTetsOverNeedlesStayBadBesideAStrip) {
   }
   EXPECT_GT(over_needles, 0U);
   EXPECT_EQ(others, 0U);
-}
-
-TEST(VertexRemoval, LeavesAValidMeshWithoutTheVertex) {
-  const auto body = refined(ball_body(0.4, 0.1), 0.1);
-  const auto locked = locked_facets(body->mesh->complex());
-  const double volume = sixfold_volume(*body->mesh);
-  VertexRemoval removal(*body->mesh);
-  std::size_t removed = 0;
-  for (std::size_t v = 0; v < body->store.size(); ++v) {
-    if (body->store.owner(VertexId(v)).kind != OwnerKind::interior || !body->mesh->contains(VertexId(v))) continue;
-    EXPECT_FALSE(removal.remove(VertexId(v), 0.99)) << "no tet is as good as that";
-    EXPECT_TRUE(body->mesh->contains(VertexId(v)));
-    if (!removal.remove(VertexId(v), 0.01)) continue;
-    ++removed;
-    EXPECT_FALSE(body->mesh->contains(VertexId(v)));
-    ASSERT_EQ(defects(*body->mesh), "");
-  }
-  EXPECT_GT(removed, 0U);
-  EXPECT_NEAR(sixfold_volume(*body->mesh), volume, 1e-12);
-  EXPECT_EQ(locked_facets(body->mesh->complex()), locked);
 }
 
 TEST(Improve, StopsWhenAsked) {

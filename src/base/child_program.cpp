@@ -1,6 +1,7 @@
-// A process group for each child, so that a CAD helper or any other grandchild ends with it. A parent that is killed
-// cannot end its children, and posix_spawn cannot tell them to watch it: they do so themselves.
-#include "child.h"
+// Spawned, not forked: a fork of a process with threads may not call the CAD kernel. A process group for each child, so
+// that a Ctrl-C is its parent's to pass on, and what it started can be ended with it. A parent that is killed cannot
+// end its children, and posix_spawn cannot tell them to watch it: they do so themselves.
+#include "base/child_program.h"
 
 #include <fcntl.h>
 #include <signal.h>
@@ -17,7 +18,7 @@
 
 extern char** environ;
 
-namespace curvetet::cli {
+namespace curvetet {
 
 namespace {
 
@@ -94,4 +95,4 @@ void end_with_parent() {
 
 std::string end_with_parent_variable() { return std::string(kParent) + "=" + std::to_string(getpid()); }
 
-}  // namespace curvetet::cli
+}  // namespace curvetet

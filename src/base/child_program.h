@@ -6,10 +6,10 @@
 #include <string>
 #include <vector>
 
-namespace curvetet::cli {
+namespace curvetet {
 
-/// The child is spawned, not forked, reads nothing and says everything to a log file. It, and whatever it started, is
-/// killed when it goes out of scope unfinished. To be made and polled by one thread.
+/// The child reads nothing and says everything to a log file. It, and what it started in its own group, is killed when
+/// it goes out of scope unfinished. To be made and polled by one thread.
 class ChildProgram {
  public:
   /// Adds `variables` (NAME=value) to the environment.
@@ -39,4 +39,4 @@ void end_with_parent();
 /// The variable by which a parent asks, with its process id as value.
 std::string end_with_parent_variable();
 
-}  // namespace curvetet::cli
+}  // namespace curvetet
