@@ -48,7 +48,7 @@ lint() {
   python3 scripts/check_includes.py
   say "clang-tidy"
   [ -f build/release/compile_commands.json ] || build
-  git ls-files -co --exclude-standard 'src/*.cpp' 'apps/*.cpp' |
+  git ls-files -co --exclude-standard 'src/*.cpp' 'apps/*.cpp' 'python/*.cpp' |
     xargs -P "$jobs" -n 4 clang-tidy --quiet -p build/release 2> >(grep -v "warnings\? generated" >&2 || true)
 }
 
