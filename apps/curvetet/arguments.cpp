@@ -234,6 +234,16 @@ void add_overlaps(CLI::App& app, Overlaps& overlaps) {
       ->type_name("MODE");
 }
 
+void add_conformal(CLI::App& app, Conformal& conformal) {
+  const std::map<std::string, Conformal> names{
+      {"auto", Conformal::automatic}, {"off", Conformal::off}, {"strict", Conformal::strict}};
+  app.add_option("--conformal", conformal,
+                 "solids that touch: auto (default) joins them where the CAD kernel can, strict refuses where it "
+                 "cannot, off meshes solids that share no face apart, even if they overlap")
+      ->transform(CLI::CheckedTransformer(names).description(""))
+      ->type_name("MODE");
+}
+
 void describe_units_and_limits(CLI::App& app, RawMesh& raw, Options& options) {
   app.add_option("--unit", options.unit, "unit of the output: um, mm, cm, m, inch, ft; default: mm, or --input-unit")
       ->type_name("UNIT")
@@ -274,6 +284,7 @@ CLI::App* describe_mesh(CLI::App& app, RawMesh& raw, MeshCommand& command) {
                  ".msh: boundary nodes with their parameters as Gmsh's parametric nodes");
   mesh->add_option("--report", command.report, "JSON report, also written when meshing fails")->type_name("FILE");
   mesh->add_flag("--keep-invalid", command.keep_invalid, "write the mesh even if the final check finds it invalid");
+  add_conformal(*mesh, command.options.conformal);
   add_overlaps(*mesh, command.options.overlaps);
   CLI::Option* quiet = mesh->add_flag("-q,--quiet", command.quiet, "say nothing but errors")->option_text(" ");
   mesh->add_flag("-v,--verbose", command.verbose, "say more")->excludes(quiet)->option_text(" ");
@@ -288,7 +299,8 @@ CLI::App* describe_info(CLI::App& app, InfoCommand& command) {
   info->add_option("INPUT", command.input, "STEP, IGES or BREP file")->required()->type_name("FILE");
   info->add_flag("--json", command.json, "as JSON");
   info->add_option("--input-unit", command.input_unit, "unit of an input that carries none (BREP)")->type_name("UNIT");
-  add_overlaps(*info, command.overlaps);
+  add_conformal(*info, command.joining.conformal);
+  add_overlaps(*info, command.joining.overlaps);
   info->add_flag("!--no-isolate", command.isolate, "read the CAD file in this process, not in a helper")
       ->option_text(" ");
   return info;
@@ -306,7 +318,8 @@ CLI::App* describe_check(CLI::App& app, CheckCommand& command) {
       ->type_name("NUMBER");
   check->add_option("--input-unit", command.input_unit, "unit of a CAD file that carries none (BREP)")
       ->type_name("UNIT");
-  add_overlaps(*check, command.overlaps);
+  add_conformal(*check, command.joining.conformal);
+  add_overlaps(*check, command.joining.overlaps);
   check->add_flag("!--no-isolate", command.isolate, "read the CAD file in this process, not in a helper")
       ->option_text(" ");
   check->add_option("--threads", command.threads, "0: all cores")->type_name("NUMBER")->check(CLI::Range(0, 4096));

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "cad/joining.h"
 #include "curvetet/error.h"
 #include "curvetet/options.h"
 #include "io/formats.h"
@@ -28,14 +29,14 @@ struct MeshCommand {
 
 struct InfoCommand {
   std::string input, input_unit;
-  Overlaps overlaps = Overlaps::refuse;
+  Joining joining;
   bool json = false, isolate = true;
 };
 
 struct CheckCommand {
   std::string mesh, cad;  ///< cad is empty where the mesh is checked alone
   std::string input_unit;
-  Overlaps overlaps = Overlaps::refuse;
+  Joining joining;
   std::optional<double> unit_scale;
   bool json = false, isolate = true;
   int threads = 0;

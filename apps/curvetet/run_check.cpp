@@ -9,6 +9,7 @@
 #include "own_program.h"
 #include "pipeline/settings.h"
 #include "quality/validate.h"
+#include "quality/validate_parts.h"
 #include "terminal.h"
 
 namespace curvetet::cli {
@@ -107,13 +108,15 @@ int run_check(const CheckCommand& command) {
     options.input_unit = command.input_unit;
     options.isolate = command.isolate;
     options.helper = own_program();
-    options.overlaps = command.overlaps;
+    options.joining = command.joining;
     Result<Model> loaded = load_model(command.cad, options, context);
     if (!loaded) return show_error(loaded.error());
     model = std::move(loaded.value());
   }
   const double scale = model ? scale_of(command, mesh.value(), *model) : 1;
-  const ValidationReport report = validate(mesh.value(), model ? &*model : nullptr, scale, context);
+  const bool apart = command.joining.conformal == Conformal::off;
+  const ValidationReport report =
+      (apart ? validate_parts : validate)(mesh.value(), model ? &*model : nullptr, scale, context);
   if (context.should_stop()) return show_error(context.stop_error("the check"));
   fmt::print("{}", command.json ? as_json(mesh.value(), report) : as_words(mesh.value(), report));
   return report.valid() ? 0 : exit_code(ErrorCode::invalid_mesh);

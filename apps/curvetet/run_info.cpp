@@ -17,7 +17,7 @@ int run_info(const InfoCommand& command) {
   options.input_unit = command.input_unit;
   options.isolate = command.isolate;
   options.helper = own_program();
-  options.overlaps = command.overlaps;
+  options.joining = command.joining;
   const Result<Model> model = load_model(command.input, options, context);
   if (!model) return show_error(model.error());
   const Result<std::string> text = describe_model(model.value(), command.json);

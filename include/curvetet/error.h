@@ -33,6 +33,7 @@ enum class ErrorCode {
   bad_face,
   self_intersection,
   output_unwritable,
+  not_conformal,
   // no mesh within budget or wish (exit code 4)
   cancelled = 300,
   time_limit,

@@ -20,6 +20,12 @@ struct LocalSize {
 
 enum class RecoveryMode { conjoint, paper };
 
+/// Solids that touch are joined, so that they share what they touch in and the mesh is conformal across it: where the
+/// CAD kernel can (automatic; a note in the report's healing where it cannot), or not at all (off: solids that share no
+/// face in the file are meshed apart, each with nodes of its own, and may touch and overlap), or always (strict: it is
+/// an error, not_conformal, where that fails).
+enum class Conformal { automatic, off, strict };
+
 /// What is done with solids that overlap: refused, or split so that what they have in common is a solid of its own.
 enum class Overlaps { refuse, split };
 
@@ -37,9 +43,10 @@ struct Options {
 
   std::string unit;  ///< of the output: "um", "mm", "cm", "m", "inch", "ft"; default: mm, or `input_unit` if given
   std::string input_unit;  ///< of BREP files and shapes in memory, which carry none; default: mm
-  Overlaps overlaps = Overlaps::refuse;
-  bool isolate_cad = true;  ///< read and heal in a helper process
-  std::string cad_helper;   ///< the curvetet program that helps; default: this one, or one beside it, if so named
+  Conformal conformal = Conformal::automatic;
+  Overlaps overlaps = Overlaps::refuse;  ///< with Conformal::off, solids may overlap, and nothing is split
+  bool isolate_cad = true;               ///< read and heal in a helper process
+  std::string cad_helper;  ///< the curvetet program that helps; default: this one, or one beside it, if so named
 
   RecoveryMode recovery = RecoveryMode::conjoint;
   bool refine_interior = true;

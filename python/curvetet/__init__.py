@@ -45,7 +45,7 @@ class InternalError(RuntimeError):
 
 def mesh(path, *, size=None, size_divisor=10.0, min_size=None, curvature=12.0, chord_height=None, grading=0.5,
          gaps=True, face_sizes=None, edge_sizes=None, solid_sizes=None, size_callback=None, unit="", input_unit="",
-         overlaps="refuse", recovery="conjoint", refine_interior=True, improve=True, radius_edge=2.0,
+         conformal="auto", overlaps="refuse", recovery="conjoint", refine_interior=True, improve=True, radius_edge=2.0,
          time_limit=None, memory_limit=0, threads=0, seed=1, isolate_cad=True, cad_helper=None, keep_invalid=False,
          progress=None, log=None):
     """Meshes a CAD file (STEP, IGES or BREP) and returns a Mesh.
@@ -63,6 +63,8 @@ def mesh(path, *, size=None, size_divisor=10.0, min_size=None, curvature=12.0, c
     size_callback function of (x, y, z) that returns the largest size there; it is called from many threads in turn
     unit, input_unit
                   "um", "mm", "cm", "m", "inch" or "ft"
+    conformal     solids that touch: "auto" joins them where the CAD kernel can, "strict" raises where it cannot, "off"
+                  meshes solids that share no face apart, even if they overlap
     overlaps      "refuse" solids that overlap, or "split" them: what they have in common becomes a solid
     recovery      "conjoint", or "paper" for the published method to the letter
     refine_interior, improve

@@ -40,6 +40,8 @@ const char* name(ErrorCode code) {
       return "self_intersection";
     case ErrorCode::output_unwritable:
       return "output_unwritable";
+    case ErrorCode::not_conformal:
+      return "not_conformal";
     case ErrorCode::cancelled:
       return "cancelled";
     case ErrorCode::time_limit:

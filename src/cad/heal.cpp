@@ -109,26 +109,38 @@ void fix_shape(CadBody& body) {
   replace_shape(body, fix->Shape(), [&](const TopoDS_Shape& part) { return context->Apply(part); });
 }
 
-/// Imprints and merges solids that touch; the result is kept unless it is worse. An error if solids overlap
-/// that must not.
-Status fuse(Attempt& best, const std::string& source, Overlaps overlaps) {
-  CadBody fused = best.body;
-  const Result<Fusing> fusing = fuse_touching(fused, overlaps, source);
-  if (!fusing) return fusing.error();
-  const Fusing outcome = fusing.value();
-  if (outcome == Fusing::failed) best.model.value().healing.push_back(fused.notes.back());
-  if (outcome != Fusing::imprinted) {
-    best.body.notes = std::move(fused.notes);
-    return Done{};
+/// Solids that touch stay apart: a note, or an error if they must not.
+Status leave_apart(Attempt& best, const std::string& source, Conformal conformal, const std::string& why) {
+  if (conformal == Conformal::strict) {
+    return Error{ErrorCode::not_conformal,
+                 "the mesh of " + source + " would not be conformal: " + why,
+                 {},
+                 {},
+                 "imprint the solids in the CAD system, or ask for less than strict conformity"};
   }
-  Attempt next = attempt(std::move(fused), source);
-  if (next.bad < kSerious) {
-    best = std::move(next);
-    return Done{};
-  }
-  const HealingNote note{"file", "solids that touch are not fused: the fused shape would be broken"};
+  const HealingNote note{"file", why};
   best.body.notes.push_back(note);
   best.model.value().healing.push_back(note);
+  return Done{};
+}
+
+/// Imprints and merges solids that touch; the result is kept unless it is worse. An error if solids overlap
+/// that must not.
+Status join(Attempt& best, const std::string& source, const Joining& joining) {
+  if (joining.overlaps == Overlaps::refuse) {
+    if (const auto error = find_overlap(best.body, source)) return *error;
+  }
+  CadBody fused = best.body;
+  const Result<Fusing> fusing = fuse_touching(fused, joining.overlaps, source);
+  if (!fusing) return fusing.error();
+  if (fusing.value() == Fusing::apart) return Done{};
+  if (fusing.value() == Fusing::failed) return leave_apart(best, source, joining.conformal, fused.notes.back().what);
+  Attempt next = attempt(std::move(fused), source);
+  if (next.bad >= kSerious) {
+    return leave_apart(best, source, joining.conformal,
+                       "solids that touch are not fused: the fused shape would be broken");
+  }
+  best = std::move(next);
   return Done{};
 }
 
@@ -155,7 +167,7 @@ Error fault_error(const Attempt& result, const std::string& source) {
 
 }  // namespace
 
-Result<Model> heal_and_convert(CadBody& body, const std::string& source, Overlaps overlaps) {
+Result<Model> heal_and_convert(CadBody& body, const std::string& source, const Joining& joining) {
   const QuietMessages quiet;
   return guarded(ErrorCode::reader_failed, "cannot repair the shape in " + source, [&]() -> Result<Model> {
     if (const auto error = close_solids(body, source)) return *error;
@@ -169,10 +181,9 @@ Result<Model> heal_and_convert(CadBody& body, const std::string& source, Overlap
     }
     if (!best.model) return best.model.error();
     if (best.bad >= kSerious) return fault_error(best, source);
-    if (overlaps == Overlaps::refuse) {
-      if (const auto error = find_overlap(best.body, source)) return *error;
+    if (joining.conformal != Conformal::off) {
+      if (const Status joined = join(best, source, joining); !joined) return joined.error();
     }
-    if (const Status fused = fuse(best, source, overlaps); !fused) return fused.error();
     body = std::move(best.body);
     for (const ModelFault& fault : best.faults) {
       const HealingNote note{fault.entity, fault.what + " (left as it is)"};

@@ -5,14 +5,15 @@
 
 #include "base/error.h"
 #include "cad/body.h"
-#include "curvetet/options.h"
+#include "cad/joining.h"
 
 namespace curvetet {
 
 /// Sews faces into solids where there are none or where a solid is open, repairs what the check of the converted model
 /// finds broken, and returns that model. `body` becomes the healed shape; ids stay those of the shape as it came.
 /// Errors: no_faces, no_solid, open_shell (number of free edges, and a place), bad_face (which, and what is wrong), and
-/// those of convert_body; overlapping_solids where those are refused.
-Result<Model> heal_and_convert(CadBody& body, const std::string& source, Overlaps overlaps);
+/// those of convert_body; overlapping_solids where those are refused; not_conformal where solids that touch must be
+/// joined and cannot.
+Result<Model> heal_and_convert(CadBody& body, const std::string& source, const Joining& joining);
 
 }  // namespace curvetet

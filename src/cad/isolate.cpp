@@ -35,7 +35,23 @@ constexpr const char* kHelperVariable = "CURVETET_CAD_HELPER";
 /// A busy machine must not fail a body that an idle one reads: processor time counts, the clock only stops what sleeps.
 constexpr double kClockFactor = 4;
 constexpr const char* kHelperFlag = "--cad-helper";
-constexpr const char *kRefuse = "refuse", *kSplit = "split";  // Overlaps
+
+// How the helper is told of Joining.
+constexpr const char *kAutomatic = "auto", *kStrict = "strict", *kOff = "off", *kSplit = "split";
+
+std::string word_of(const Joining& joining) {
+  if (joining.conformal == Conformal::off) return kOff;
+  const std::string word = joining.conformal == Conformal::strict ? kStrict : kAutomatic;
+  return joining.overlaps == Overlaps::split ? word + "," + kSplit : word;
+}
+
+Joining joining_of(const std::string& word) {
+  Joining joining;
+  if (word == kOff) joining.conformal = Conformal::off;
+  if (word.rfind(kStrict, 0) == 0) joining.conformal = Conformal::strict;
+  if (word.find(kSplit) != std::string::npos) joining.overlaps = Overlaps::split;
+  return joining;
+}
 
 /// A folder of our own that vanishes with its contents.
 class TemporaryFolder {
@@ -120,11 +136,10 @@ Result<CadBody> read_isolated(const std::string& path, const std::string& helper
   if (folder.path().empty()) return Error{ErrorCode::output_unwritable, "cannot make a temporary folder"};
   const std::string out_path = folder.path() + "/shape.bin";
   const double allowed = options.isolate_time_limit;
-  ChildProgram child(
-      helper,
-      {helper, kHelperFlag, path, out_path, options.input_unit, std::to_string(options.isolate_memory_limit),
-       std::to_string(allowed), options.overlaps == Overlaps::split ? kSplit : kRefuse},
-      "/dev/null", {std::string(kHelperVariable) + "=1", end_with_parent_variable()});
+  ChildProgram child(helper,
+                     {helper, kHelperFlag, path, out_path, options.input_unit,
+                      std::to_string(options.isolate_memory_limit), std::to_string(allowed), word_of(options.joining)},
+                     "/dev/null", {std::string(kHelperVariable) + "=1", end_with_parent_variable()});
   if (!child.started()) return Error{ErrorCode::bad_option, "cannot start the helper program " + helper};
   const auto start = Clock::now();
   auto pause = std::chrono::milliseconds(1);
@@ -160,8 +175,7 @@ int run_cad_helper(int argc, char** argv) {
   if (!announce_transfer(out_path)) return kUnwritable;
   Result<CadBody> body = read_body(path, unit);
   if (!body) return write_transfer(body.error(), out_path) ? 0 : kUnwritable;
-  const Result<Model> model =
-      heal_and_convert(body.value(), path, argv[7] == std::string(kSplit) ? Overlaps::split : Overlaps::refuse);
+  const Result<Model> model = heal_and_convert(body.value(), path, joining_of(argv[7]));
   const bool written = model ? write_transfer(body.value(), out_path) : write_transfer(model.error(), out_path);
   return written ? 0 : kUnwritable;
 }

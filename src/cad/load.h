@@ -6,14 +6,14 @@
 
 #include "base/context.h"
 #include "base/error.h"
-#include "curvetet/options.h"
+#include "cad/joining.h"
 #include "geometry/model.h"
 
 namespace curvetet {
 
 struct LoadOptions {
   std::string input_unit;  ///< for files that carry no unit: "mm", "cm", "m", "inch"; empty: mm
-  Overlaps overlaps = Overlaps::refuse;
+  Joining joining;
   bool isolate = true;  ///< read and heal in a helper process, so that a crash or a loop there becomes a message
   double isolate_time_limit = 60;                            ///< seconds
   std::size_t isolate_memory_limit = std::size_t{4} << 30U;  ///< bytes

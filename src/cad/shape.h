@@ -6,6 +6,7 @@
 
 #include "base/context.h"
 #include "base/error.h"
+#include "cad/joining.h"
 #include "curvetet/occt.h"
 #include "geometry/model.h"
 
@@ -14,7 +15,7 @@ namespace curvetet {
 struct ShapeOptions {
   std::string unit = "mm";  ///< of the shape's coordinates
   ShapeLabels labels;
-  Overlaps overlaps = Overlaps::refuse;
+  Joining joining;
 };
 
 /// Ids are those of TopExp::MapShapes on the shape. Repairs, where the shape needs any, run in this process, on a copy:

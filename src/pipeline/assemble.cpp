@@ -85,50 +85,21 @@ class Assembly {
     for (VertexId v : conjoint_.boundary().cad_vertices) mesh_.corner_nodes.push_back(v.valid() ? number(v) : kUnused);
   }
 
-  static Entity entity(const Label& label, std::string name) {
-    Entity e;
-    e.cad_id = label.cad_id;
-    e.name = std::move(name);
-    if (label.colour) e.colour = std::array<double, 3>{label.colour->red, label.colour->green, label.colour->blue};
-    return e;
-  }
-
+  /// What bounds what, as this mesh has it.
   void add_entities() {
-    for (std::size_t v = 0; v < model_.vertices.size(); ++v) {
-      const Label& label = model_.vertices[CadVertexId(v)].label;
-      mesh_.vertices.push_back(entity(label, "vertex_" + std::to_string(label.cad_id)));
-    }
-    for (std::size_t e = 0; e < model_.edges.size(); ++e) {
-      const ModelEdge& edge = model_.edges[EdgeId(e)];
-      Entity made = entity(edge.label, model_.edge_name(EdgeId(e)));
-      made.boundary = {-static_cast<std::int32_t>(model_.vertices[edge.start].label.cad_id),
-                       static_cast<std::int32_t>(model_.vertices[edge.end].label.cad_id)};
-      mesh_.edges.push_back(std::move(made));
-    }
-    for (std::size_t f = 0; f < model_.faces.size(); ++f) add_face(FaceId(f));
-    for (std::size_t s = 0; s < model_.solids.size(); ++s) add_solid(SolidId(s));
+    add_labels(mesh_, model_);
+    for (std::size_t f = 0; f < model_.faces.size(); ++f) add_face_boundary(FaceId(f));
     add_boxes();
   }
 
-  void add_face(FaceId f) {
-    Entity made = entity(model_.faces[f].label, model_.face_name(f));
+  void add_face_boundary(FaceId f) {
     std::set<std::int32_t> seen;
     for (const UseRef& use : conjoint_.boundary().uses[f]) {
       const ModelEdge& edge = model_.edges[use.edge];
       if (edge.degenerate) continue;
       const auto id = static_cast<std::int32_t>(edge.label.cad_id);
-      if (seen.insert(id).second) made.boundary.push_back(use.use->reversed ? -id : id);
+      if (seen.insert(id).second) mesh_.faces[f.value()].boundary.push_back(use.use->reversed ? -id : id);
     }
-    mesh_.faces.push_back(std::move(made));
-  }
-
-  void add_solid(SolidId s) {
-    Entity made = entity(model_.solids[s].label, model_.solid_name(s));
-    for (FaceId f : model_.solids[s].faces) {
-      const auto id = static_cast<std::int32_t>(model_.faces[f].label.cad_id);
-      made.boundary.push_back(model_.faces[f].back == s ? id : -id);
-    }
-    mesh_.solids.push_back(std::move(made));
   }
 
   void add_boxes() {
@@ -165,7 +136,41 @@ class Assembly {
   Mesh mesh_;
 };
 
+Entity entity(const Label& label, std::string name) {
+  Entity e;
+  e.cad_id = label.cad_id;
+  e.name = std::move(name);
+  if (label.colour) e.colour = std::array<double, 3>{label.colour->red, label.colour->green, label.colour->blue};
+  return e;
+}
+
+Entity edge_entity(const Model& model, EdgeId id) {
+  const ModelEdge& edge = model.edges[id];
+  Entity made = entity(edge.label, model.edge_name(id));
+  made.boundary = {-static_cast<std::int32_t>(model.vertices[edge.start].label.cad_id),
+                   static_cast<std::int32_t>(model.vertices[edge.end].label.cad_id)};
+  return made;
+}
+
+Entity solid_entity(const Model& model, SolidId s) {
+  Entity made = entity(model.solids[s].label, model.solid_name(s));
+  for (FaceId f : model.solids[s].faces) {
+    const auto id = static_cast<std::int32_t>(model.faces[f].label.cad_id);
+    made.boundary.push_back(model.faces[f].back == s ? id : -id);
+  }
+  return made;
+}
+
 }  // namespace
+
+void add_labels(Mesh& mesh, const Model& model) {
+  for (const ModelVertex& vertex : model.vertices)
+    mesh.vertices.push_back(entity(vertex.label, "vertex_" + std::to_string(vertex.label.cad_id)));
+  for (std::size_t e = 0; e < model.edges.size(); ++e) mesh.edges.push_back(edge_entity(model, EdgeId(e)));
+  for (std::size_t f = 0; f < model.faces.size(); ++f)
+    mesh.faces.push_back(entity(model.faces[FaceId(f)].label, model.face_name(FaceId(f))));
+  for (std::size_t s = 0; s < model.solids.size(); ++s) mesh.solids.push_back(solid_entity(model, SolidId(s)));
+}
 
 Mesh assemble(const Conjoint& conjoint, const Settings& settings) { return Assembly(conjoint, settings).run(); }
 

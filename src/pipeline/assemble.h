@@ -11,6 +11,9 @@ namespace curvetet {
 /// each time.
 Mesh assemble(const Conjoint& conjoint, const Settings& settings);
 
+/// The body's entities with their labels; faces still without their boundary, all without boxes.
+void add_labels(Mesh& mesh, const Model& model);
+
 /// FNV-1a over the bits of points, tets and triangles.
 std::uint64_t mesh_hash(const Mesh& mesh);
 

@@ -18,7 +18,7 @@ Result<MeshOutput> mesh(const TopoDS_Shape& shape, const ShapeLabels& labels, co
     ShapeOptions load;
     if (!options.input_unit.empty()) load.unit = options.input_unit;
     load.labels = labels;
-    load.overlaps = options.overlaps;
+    load.joining = {options.conformal, options.overlaps};
     return model_from_shape(shape, load, while_loading);
   };
   return mesh_source(source, options, context, report_on_failure);

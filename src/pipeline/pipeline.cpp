@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <chrono>
 #include <fstream>
 
@@ -11,9 +12,10 @@
 #include "cad/load.h"
 #include "pipeline/assemble.h"
 #include "pipeline/body_mesher.h"
+#include "pipeline/join_parts.h"
 #include "pipeline/report_builder.h"
 #include "pipeline/settings.h"
-#include "quality/validate.h"
+#include "quality/validate_parts.h"
 #include "volume/improve.h"
 #include "volume/refine.h"
 
@@ -33,6 +35,68 @@ std::string file_hash(const std::string& path) {
   return fmt::format("{:016x}", hash);
 }
 
+/// The stages from sizes to the finished mesh, for a whole body or a part of one.
+class BodyRun {
+ public:
+  BodyRun(const Model& model, const Settings& settings, const Options& options, StageClock& clock, Context& context,
+          Report& report)
+      : model_(model), settings_(settings), options_(options), clock_(clock), context_(context), report_(report) {}
+
+  Result<Mesh> operator()() {
+    const Status boundary = mesh_boundary_stages();
+    if (!boundary.ok()) return boundary.error();
+    const Status volume = mesh_volume_stages();
+    if (!volume.ok()) return volume.error();
+    BodyMesh& body = *body_.mesh;
+    report_body(report_, model_, settings_, body_, locked_facets(*body.tets, model_.faces.size()));
+    report_fineness(report_, model_, settings_, sizes_, body);
+    return assemble(*body.conjoint, settings_);
+  }
+
+ private:
+  Status mesh_boundary_stages() {
+    clock_.start("size field", 0.05);
+    auto sizes = make_size_field(model_, settings_.sizing, context_);
+    if (!sizes.ok()) return sizes.error();
+    sizes_ = std::move(sizes.value());
+    auto body = mesh_body(model_, sizes_, settings_, options_, clock_, context_);
+    if (!body.ok()) return body.error();
+    body_ = std::move(body.value());
+    report_reductions(report_, model_, settings_, sizes_);
+    report_.rounds = std::max(report_.rounds, body_.rounds);
+    if (body_.failures.empty()) return Done{};
+    for (const RecoveryFailure& f : body_.failures) report_.errors.push_back(to_error(f, model_, settings_));
+    return report_.errors.front();
+  }
+
+  Status mesh_volume_stages() {
+    BodyMesh& body = *body_.mesh;
+    if (options_.refine_interior) {
+      clock_.start("interior points", 0.55);
+      RefineOptions refine;
+      refine.radius_edge = options_.radius_edge;
+      auto refined = refine_interior(*body.tets, body.vertices, sizes_, refine, context_);
+      if (!refined.ok()) return refined.error();
+      report_.unmet_tets += refined.value().unmet;
+    }
+    if (options_.improve) {
+      clock_.start("improvement", 0.75);
+      auto improved = improve(*body.tets, body.vertices, ImproveOptions{}, context_);
+      if (!improved.ok()) return improved.error();
+    }
+    return Done{};
+  }
+
+  const Model& model_;
+  const Settings& settings_;
+  const Options& options_;
+  StageClock& clock_;
+  Context& context_;
+  Report& report_;
+  SizeField sizes_;
+  BodyMesherResult body_;
+};
+
 class Run {
  public:
   Run(const Source& source, const Options& options, Context& context, Report& report)
@@ -49,11 +113,9 @@ class Run {
     context_.seed = options_.seed;
     const Status loaded = load();
     if (!loaded.ok()) return loaded.error();
-    const Status boundary = mesh_boundary_stages();
-    if (!boundary.ok()) return boundary.error();
-    const Status volume = mesh_volume_stages();
-    if (!volume.ok()) return volume.error();
-    return finish();
+    Result<Mesh> mesh = apart() ? mesh_parts() : BodyRun(model_, settings_, options_, clock_, context_, report_)();
+    if (!mesh.ok()) return mesh.error();
+    return finish(std::move(mesh.value()));
   }
 
   void keep_times() {
@@ -62,6 +124,8 @@ class Run {
   }
 
  private:
+  bool apart() const { return options_.conformal == Conformal::off; }
+
   Status load() {
     clock_.start("load", 0);
     auto model = source_.load(context_);
@@ -75,51 +139,35 @@ class Run {
     return Done{};
   }
 
-  Status mesh_boundary_stages() {
-    clock_.start("size field", 0.05);
-    auto sizes = make_size_field(model_, settings_.sizing, context_);
-    if (!sizes.ok()) return sizes.error();
-    sizes_ = std::move(sizes.value());
-    auto body = mesh_body(model_, sizes_, settings_, options_, clock_, context_);
-    if (!body.ok()) return body.error();
-    body_ = std::move(body.value());
-    report_reductions(report_, model_, settings_, sizes_);
-    report_.rounds = body_.rounds;
-    if (body_.failures.empty()) return Done{};
-    for (const RecoveryFailure& f : body_.failures) report_.errors.push_back(to_error(f, model_, settings_));
-    return report_.errors.front();
+  /// Parts that share nothing, one after the other: each as if it were alone.
+  Result<Mesh> mesh_parts() {
+    const std::vector<std::vector<SolidId>> parts = parts_of(model_);
+    Mesh mesh = empty_mesh(model_, settings_);
+    for (std::size_t i = 0; i < parts.size(); ++i) {
+      const double share = (kVolumeDone - kLoadDone) / static_cast<double>(parts.size());
+      clock_.set_span(kLoadDone + static_cast<double>(i) * share, share);
+      const Part part = make_part(model_, parts[i]);
+      Result<Mesh> made = BodyRun(part.model, settings_of(part, settings_), options_, clock_, context_, report_)();
+      if (!made.ok()) return made.error();
+      append(mesh, made.value(), part);
+    }
+    clock_.set_span(0, 1);
+    sort_entities(report_, mesh);
+    return mesh;
   }
 
-  Status mesh_volume_stages() {
-    BodyMesh& body = *body_.mesh;
-    if (options_.refine_interior) {
-      clock_.start("interior points", 0.55);
-      RefineOptions refine;
-      refine.radius_edge = options_.radius_edge;
-      auto refined = refine_interior(*body.tets, body.vertices, sizes_, refine, context_);
-      if (!refined.ok()) return refined.error();
-      report_.unmet_tets = refined.value().unmet;
-    }
-    if (options_.improve) {
-      clock_.start("improvement", 0.75);
-      auto improved = improve(*body.tets, body.vertices, ImproveOptions{}, context_);
-      if (!improved.ok()) return improved.error();
-    }
-    return Done{};
-  }
-
-  Result<Mesh> finish() {
-    clock_.start("validation", 0.92);
-    BodyMesh& body = *body_.mesh;
-    report_body(report_, model_, settings_, body_, locked_facets(*body.tets, model_.faces.size()));
-    report_fineness(report_, model_, settings_, sizes_, body);
-    Mesh mesh = assemble(*body.conjoint, settings_);
-    const ValidationReport validation = validate(mesh, &model_, settings_.unit_scale, context_);
+  Result<Mesh> finish(Mesh mesh) {
+    clock_.start("validation", kVolumeDone);
+    const ValidationReport validation =
+        (apart() ? validate_parts : validate)(mesh, &model_, settings_.unit_scale, context_);
     if (!validation.valid() && context_.should_stop()) return context_.stop_error("validation");
     report_mesh(report_, mesh, validation);
     context_.progress("done", 1);
     return mesh;
   }
+
+  // Shares of the run.
+  static constexpr double kLoadDone = 0.05, kVolumeDone = 0.92;
 
   const Source& source_;
   const Options& options_;
@@ -128,8 +176,6 @@ class Run {
   StageClock clock_;
   Model model_;
   Settings settings_;
-  SizeField sizes_;
-  BodyMesherResult body_;
 };
 
 }  // namespace
@@ -158,7 +204,7 @@ Result<MeshOutput> mesh(const Input& input, const Options& options, Context& con
     load.input_unit = options.input_unit;
     load.isolate = options.isolate_cad;
     load.helper = options.cad_helper;
-    load.overlaps = options.overlaps;
+    load.joining = {options.conformal, options.overlaps};
     if (options.time_limit) load.isolate_time_limit = std::max(load.isolate_time_limit, *options.time_limit);
     return load_model(input.path, load, while_loading);
   };

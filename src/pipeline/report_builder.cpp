@@ -10,6 +10,7 @@
 
 #include "geometry/check.h"
 #include "pipeline/assemble.h"
+#include "pipeline/join_parts.h"
 
 namespace curvetet {
 
@@ -141,9 +142,8 @@ void report_input(Report& report, const Model& model, const Settings& settings, 
 void report_body(Report& report, const Model& model, const Settings& settings, const BodyMesherResult& body,
                  const IndexedVector<FaceId, std::vector<FacetKey>>& locked) {
   const BodyMesh& mesh = *body.mesh;
-  report.rounds = body.rounds;
-  report.initial_surface_points = mesh.initial_surface_points;
-  RecoveryCounts& c = report.recovery;
+  report.initial_surface_points += mesh.initial_surface_points;
+  RecoveryCounts c;
   c.crossings = mesh.crossings.first_pairs;
   c.edge_flips = mesh.recovery.edge_flips;
   c.edge_splits = mesh.recovery.edge_splits;
@@ -159,6 +159,7 @@ void report_body(Report& report, const Model& model, const Settings& settings, c
   c.case3b = mesh.paper.case3b;
   c.case4 = mesh.paper.case4;
   c.fallback_faces = mesh.paper.fallback_faces;
+  add(report.recovery, c);
   for (std::size_t f = 0; f < model.faces.size(); ++f)
     report.faces.push_back(face_report(model, mesh, FaceId(f), locked[FaceId(f)]));
   const double scale = settings.unit_scale / model.frame.scale;
@@ -191,9 +192,10 @@ void report_fineness(Report& report, const Model& model, const Settings& setting
   std::set<std::uint32_t> explained;
   for (const ReductionReport& r : report.reductions) explained.insert(r.face);
   const double scale = model.frame.length_to_cad(1) * settings.unit_scale;
+  const std::size_t first = report.faces.size() - model.faces.size();  // the last ones are this model's
   for (std::size_t f = 0; f < model.faces.size(); ++f) {
     const FaceId face(f);
-    FaceReport& r = report.faces[f];
+    FaceReport& r = report.faces[first + f];
     const FaceExtent extent = extent_of(mesh, face);
     const double size = std::min(sizes.largest(), sizes.face_limit(face));
     const double of_one = std::sqrt(3.0) / 4 * size * size;

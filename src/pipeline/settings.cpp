@@ -83,6 +83,8 @@ Status check_options(const Options& o) {
   for (const std::string& unit : {o.unit, o.input_unit})
     if (!unit.empty() && !millimetres(unit))
       return bad(fmt::format("unknown unit '{}'", unit), "one of um, mm, cm, m, inch, ft");
+  if (o.conformal == Conformal::off && o.overlaps == Overlaps::split)
+    return bad("overlaps are split by joining solids, which conformal=off forbids", "leave out one of the two");
   for (const LocalSize& l : o.local_sizes)
     if (!positive(l.size))
       return bad(fmt::format("the size of '{}' must be a positive length, not {}", l.which, l.size));
@@ -129,6 +131,7 @@ std::string options_json(const Options& o, const Settings& s, const Model& model
   j["chord_height"] = o.chord_height ? nlohmann::ordered_json(*o.chord_height) : nlohmann::ordered_json();
   j["grading"] = o.grading;
   j["gaps"] = o.gaps;
+  j["conformal"] = o.conformal == Conformal::off ? "off" : o.conformal == Conformal::strict ? "strict" : "auto";
   j["overlaps"] = o.overlaps == Overlaps::split ? "split" : "refuse";
   j["recovery"] = o.recovery == RecoveryMode::paper ? "paper" : "conjoint";
   j["refine_interior"] = o.refine_interior;

@@ -15,12 +15,18 @@ class StageClock {
  public:
   explicit StageClock(Context& context) : context_(&context) {}
 
+  /// What stages call the whole run is from now on the part `share` of it that begins at `begin`.
+  void set_span(double begin, double share) {
+    span_begin_ = begin;
+    span_share_ = share;
+  }
+
   /// Ends the running stage and starts the next; `progress` is the share of the whole run done when it starts.
   void start(std::string_view stage, double progress) {
     stop();
     stage_ = stage;
     begin_ = std::chrono::steady_clock::now();
-    context_->progress(stage, progress);
+    context_->progress(stage, span_begin_ + span_share_ * progress);
   }
   void stop() {
     if (stage_.empty()) return;
@@ -39,6 +45,7 @@ class StageClock {
  private:
   Context* context_;
   std::string stage_;
+  double span_begin_ = 0, span_share_ = 1;
   std::chrono::steady_clock::time_point begin_;
   std::vector<StageTime> times_;
 };

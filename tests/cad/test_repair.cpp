@@ -32,7 +32,7 @@ namespace {
 Result<Model> convert(const TopoDS_Shape& shape, Overlaps overlaps = Overlaps::refuse) {
   Context context;
   ShapeOptions options;
-  options.overlaps = overlaps;
+  options.joining.overlaps = overlaps;
   return model_from_shape(shape, options, context);
 }
 

@@ -407,6 +407,65 @@ class Stopping(CommandLineTest):
         self.assertTrue(shown.endswith(b"\r\x1b[K"), shown[-80:])
 
 
+class Assemblies(CommandLineTest):
+    def mesh_and_check(self, body, *options):
+        mesh, report = self.folder / "out.msh", self.folder / "report.json"
+        self.expect(0, "mesh", BODIES / body, "-o", mesh, "--report", report, "--size", "3", *options)
+        checked = json.loads(self.expect(0, "check", "--json", mesh, BODIES / body, *options).stdout)
+        return json.loads(report.read_text()), checked
+
+    def test_solids_that_touch_share_the_place(self):
+        for mode in ([], ["--conformal", "auto"], ["--conformal", "strict"]):
+            report, _ = self.mesh_and_check("touching.brep", *mode)
+            notes = report["input"]["healing"]
+            self.assertTrue(any("coincides" in note or "split" in note for note in notes), notes)
+
+    def test_apart_each_has_nodes_of_its_own(self):
+        joined, _ = self.mesh_and_check("touching.brep")
+        apart, checked = self.mesh_and_check("touching.brep", "--conformal", "off")
+        self.assertEqual(apart["options"]["conformal"], "off")
+        self.assertEqual([face["face"] for face in apart["faces"]], list(range(1, 19)))
+        self.assertEqual([solid["solid"] for solid in apart["solids"]], [1, 2, 3])
+        self.assertGreater(apart["counts"]["triangles"], joined["counts"]["triangles"])
+        for solid, volume in zip(checked["solids"], (1000, 512, 125)):
+            self.assertAlmostEqual(solid["volume"], volume, delta=1e-6 * volume)
+
+    def test_solids_that_overlap_are_refused_split_or_meshed_apart(self):
+        body, mesh = BODIES / "overlapping.brep", self.folder / "out.msh"
+        refused = self.expect(3, "mesh", body, "-o", mesh).stderr
+        for word in ("overlapping_solids", "solid 1", "solid 2", "192"):
+            self.assertIn(word, refused)
+        split, checked = self.mesh_and_check("overlapping.brep", "--overlaps", "split")
+        self.assertEqual(len(split["solids"]), 4)
+        self.assertAlmostEqual(sum(solid["volume"] for solid in checked["solids"]), 1000 + 512 - 192 + 125, delta=1e-3)
+        _, checked = self.mesh_and_check("overlapping.brep", "--conformal", "off")
+        self.assertAlmostEqual(sum(solid["volume"] for solid in checked["solids"]), 1000 + 512 + 125, delta=1e-3)
+
+    def test_a_mesh_apart_is_not_one_that_is_conformal(self):
+        mesh = self.folder / "out.msh"
+        self.expect(0, "mesh", BODIES / "overlapping.brep", "-o", mesh, "--conformal", "off")
+        self.expect(5, "check", mesh)
+        self.expect(5, "check", mesh, BODIES / "overlapping.brep", "--overlaps", "split")
+        self.expect(0, "check", mesh, "--conformal", "off")
+
+    def test_sizes_of_a_part_and_contradictions(self):
+        mesh, report = self.folder / "out.msh", self.folder / "report.json"
+        arguments = ["mesh", BODIES / "overlapping.brep", "-o", mesh, "--report", report, "--size", "4"]
+        self.expect(0, *arguments, "--conformal", "off", "--solid-size", "2=1")
+        faces = json.loads(report.read_text())["faces"]
+        self.assertGreater(min(face["triangles"] for face in faces[6:12]), 64)
+        self.assertLess(max(face["triangles"] for face in faces[:6]), 64)
+        self.expect(2, *arguments, "--conformal", "off", "--overlaps", "split")
+        self.expect(2, *arguments, "--conformal", "off", "--solid-size", "nobody=1")
+        self.expect(2, *arguments, "--conformal", "perhaps")
+
+    def test_same_bytes_for_any_number_of_threads(self):
+        meshes = [self.folder / f"{threads}.msh" for threads in (1, 2)]
+        for threads, mesh in zip((1, 2), meshes):
+            self.expect(0, "mesh", BODIES / "overlapping.brep", "-o", mesh, "--conformal", "off", "--threads", threads)
+        self.assertEqual(*(mesh.read_bytes() for mesh in meshes))
+
+
 class Batch(CommandLineTest):
     LONG = ["--", "--size", "D/700"]  # minutes for a body
 

@@ -1,4 +1,5 @@
-// Writes the CAD files that the tests of the command line mesh: box.step, plate.step (a plate with a bore), ball.brep;
+// Writes the CAD files that the tests of the command line mesh: box.step, plate.step (a plate with a bore), ball.brep,
+// touching.brep and overlapping.brep (two boxes that touch or overlap and share nothing, a third apart);
 // and those that it must refuse: a plane and a half space without end, an open shell, a body without size, a vertex.
 #include <BRepAlgoAPI_Cut.hxx>
 #include <BRepBuilderAPI_MakeFace.hxx>
@@ -51,6 +52,17 @@ bool write_bad_bodies(const std::string& folder) {
          write_brep(BRepBuilderAPI_MakeVertex(gp_Pnt(1, 2, 3)).Shape(), folder + "vertex.brep");
 }
 
+/// Three boxes: the second begins where `second` says along x, the first ends at 10; the third is apart.
+TopoDS_Shape three_boxes(double second) {
+  TopoDS_Compound boxes;
+  BRep_Builder builder;
+  builder.MakeCompound(boxes);
+  builder.Add(boxes, BRepPrimAPI_MakeBox(10, 10, 10).Shape());
+  builder.Add(boxes, BRepPrimAPI_MakeBox(gp_Pnt(second, 2, 2), 8, 8, 8).Shape());
+  builder.Add(boxes, BRepPrimAPI_MakeBox(gp_Pnt(30, 0, 0), 5, 5, 5).Shape());
+  return boxes;
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -63,6 +75,8 @@ int main(int argc, char** argv) {
   const TopoDS_Shape bore = BRepPrimAPI_MakeCylinder(gp_Ax2(gp_Pnt(5, 10, -1), gp_Dir(0, 0, 1)), 3, 40).Shape();
   const bool done = write_step(box, folder + "box.step") &&
                     write_step(BRepAlgoAPI_Cut(box, bore).Shape(), folder + "plate.step") &&
-                    write_brep(BRepPrimAPI_MakeSphere(5).Shape(), folder + "ball.brep") && write_bad_bodies(folder);
+                    write_brep(BRepPrimAPI_MakeSphere(5).Shape(), folder + "ball.brep") &&
+                    write_brep(three_boxes(10), folder + "touching.brep") &&
+                    write_brep(three_boxes(7), folder + "overlapping.brep") && write_bad_bodies(folder);
   return done ? 0 : 1;
 }
