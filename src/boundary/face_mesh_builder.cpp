@@ -148,12 +148,18 @@ class FaceBuilder {
       if (!round.split.empty()) return round;
     }
     round.faults = mesh.build(input);
-    const auto tolerance = [this](std::int32_t use) { return use_tolerance(*uses_[static_cast<std::size_t>(use)]); };
+    const auto tolerance = [this](std::int32_t use) { return true_tolerance(*uses_[static_cast<std::size_t>(use)]); };
     for (int k = 0; k < kUntangleRounds && !round.faults.empty(); ++k) {
       if (!untangle(round.faults, *face_.surface, chart_, tolerance, round.input)) break;
       round.faults = mesh.build(input);
     }
     round.built = round.faults.empty();
+    if (last_round && !round.faults.empty() && getenv("DBGT")) {
+      for (auto& f : round.faults) fprintf(stderr, "fault %s %d.%zu %d.%zu\n", f.what.c_str(), f.use_a, f.segment_a, f.use_b, f.segment_b);
+      for (auto& l : round.input.loops) for (auto& c : l.chains) { bool in=false; for (auto& f : round.faults) in = in || f.use_a==c.use || f.use_b==c.use; if(!in) continue;
+        fprintf(stderr, "chain %d edge %u tol %g true %g\n", c.use, model_.edges[uses_[c.use]->edge].label.cad_id, use_tolerance(*uses_[c.use]), true_tolerance(*uses_[c.use]));
+        for (size_t i=0;i<c.q.size();++i) fprintf(stderr, "   %zu %.9f %.9f\n", i, c.q[i].x, c.q[i].y); }
+    }
     for (const LoopFault& fault : round.faults) request(fault, round.split);
     return round;
   }
@@ -170,6 +176,17 @@ class FaceBuilder {
   double use_tolerance(const EdgeUse& use) const {
     const ModelEdge& edge = model_.edges[use.edge];
     return std::max({edge.tolerance, model_.vertices[edge.start].tolerance, model_.vertices[edge.end].tolerance});
+  }
+
+  /// Not all that the CAD says of its tolerances is true: at least the distance of the curve to its place on the face.
+  double true_tolerance(const EdgeUse& use) const {
+    const ModelEdge& edge = model_.edges[use.edge];
+    double tolerance = use_tolerance(use);
+    for (int i = 0; i <= kUseSamples && !edge.degenerate; ++i) {
+      const double t = edge.low + (edge.high - edge.low) * i / kUseSamples;
+      tolerance = std::max(tolerance, distance(edge.curve->value(t), face_.surface->value(use.curve->value(t))));
+    }
+    return tolerance;
   }
 
   std::vector<double> parameters_of(const EdgeUse& use) const {

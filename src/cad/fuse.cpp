@@ -4,6 +4,8 @@
 // part of its boundary; what is common is a cell of its own, and the user says whose it is.
 #include "cad/fuse.h"
 
+#include <fmt/format.h>
+
 #include <BOPAlgo_Builder.hxx>
 #include <BRepBndLib.hxx>
 #include <BRepGProp.hxx>
@@ -13,6 +15,7 @@
 #include <TopExp_Explorer.hxx>
 #include <TopoDS_Compound.hxx>
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <deque>
 #include <gp_Pnt.hxx>
@@ -21,12 +24,15 @@
 #include "cad/history.h"
 #include "cad/occt_geometry.h"
 #include "cad/overlap.h"
+#include "cad/sew.h"
 
 namespace curvetet {
 namespace {
 
 /// Solids that are fused at once.
 constexpr std::size_t kGroup = 20;
+/// Over the body's diagonal: what is tried in turn where solids overlap by less than their tolerances explain.
+constexpr std::array<double, 4> kTolerances{0, 1e-6, 1e-5, 1e-4};
 constexpr double kVolume = 1e-4;  ///< relative change of a solid's volume that fusing may make
 
 struct FaceBox {
@@ -55,7 +61,8 @@ bool may_touch(const TopTools_IndexedMapOfShape& solids) {
 
 class Fuse {
  public:
-  explicit Fuse(CadBody& body) : body_(body), solids_(sub_shapes(body.shape, TopAbs_SOLID)), history_(body) {}
+  Fuse(CadBody& body, double tolerance)
+      : body_(body), tolerance_(tolerance), solids_(sub_shapes(body.shape, TopAbs_SOLID)), history_(body) {}
 
   Result<Fusing> run(Overlaps overlaps, const std::string& source) {
     if (!build()) return fail("solids that touch could not be fused: the CAD kernel failed");
@@ -65,12 +72,16 @@ class Fuse {
     }
     if (overlaps == Overlaps::refuse) {
       if (const auto overlap = common_cell()) return overlap_error(body_, *overlap, source);
-      if (const int split = split_solid(); split != 0)
+      if (const int split = split_solid(); split != 0) {
+        overlaps_by_a_hair_ = true;
         return fail("solids that touch are not fused: " + name_of(split) + " overlaps another one, by a hair");
+      }
     }
     replace();
     return Fusing::imprinted;
   }
+
+  bool overlaps_by_a_hair() const { return overlaps_by_a_hair_; }
 
  private:
   Fusing fail(const std::string& why) {
@@ -94,6 +105,7 @@ class Fuse {
     BOPAlgo_Builder& builder = builders_.emplace_back();
     builder.SetNonDestructive(true);
     builder.SetUseOBB(true);
+    builder.SetFuzzyValue(tolerance_);
     for (const TopoDS_Shape& shape : shapes) builder.AddArgument(shape);
     builder.Perform();
     history_.add(builder);
@@ -251,6 +263,8 @@ class Fuse {
   }
 
   CadBody& body_;
+  bool overlaps_by_a_hair_ = false;
+  double tolerance_;  ///< what is closer than that coincides, besides the tolerances of the parts
   TopTools_IndexedMapOfShape solids_;
   std::deque<BOPAlgo_Builder> builders_;
   FuseHistory history_;
@@ -263,7 +277,19 @@ Result<Fusing> fuse_touching(CadBody& body, Overlaps overlaps, const std::string
   if (solids.Extent() < 2) return Fusing::apart;
   // A solid may lie in another one without a face near a face.
   if (overlaps == Overlaps::refuse && !may_touch(solids)) return Fusing::apart;
-  return Fuse(body).run(overlaps, source);
+  const double diagonal = diagonal_of(body.shape);
+  for (std::size_t i = 0;; ++i) {
+    CadBody fused = body;
+    const double tolerance = kTolerances[i] * diagonal;
+    Fuse fuse(fused, tolerance);
+    const Result<Fusing> done = fuse.run(overlaps, source);
+    if (fuse.overlaps_by_a_hair() && i + 1 < kTolerances.size()) continue;
+    body = std::move(fused);
+    if (i > 0 && done && done.value() == Fusing::imprinted)
+      body.notes.push_back(
+          {"file", fmt::format("solids overlap by a hair; joined where closer than {:.3g}", tolerance)});
+    return done;
+  }
 }
 
 }  // namespace curvetet

@@ -18,6 +18,7 @@ namespace curvetet {
 namespace {
 
 constexpr int kSamples = 16;
+constexpr double kMeant = 40;  ///< length over tolerance of a curve that is there for its own sake
 
 class Joiner {
  public:
@@ -53,8 +54,22 @@ class Joiner {
     Standard_Real low = 0, high = 0;
     const Handle(Geom_Curve) curve = BRep_Tool::Curve(edge, low, high);
     const bool degenerate = BRep_Tool::Degenerated(edge) || curve.IsNull();
-    if (!degenerate && !lies_at(*curve, low, high, start, end)) return;
+    if (!degenerate &&
+        (is_meant(*curve, low, high, BRep_Tool::Tolerance(edge)) || !lies_at(*curve, low, high, start, end)))
+      return;
     if (join(a, b) && !degenerate) joined_.point[static_cast<std::size_t>(number)] = 1;
+  }
+
+  /// A curve far longer than its own tolerance is a detail of the body, however generous its ends are.
+  static bool is_meant(const Geom_Curve& curve, double low, double high, double tolerance) {
+    double length = 0;
+    gp_Pnt previous = curve.Value(low);
+    for (int i = 1; i <= kSamples; ++i) {
+      const gp_Pnt next = curve.Value(low + (high - low) * i / kSamples);
+      length += previous.Distance(next);
+      previous = next;
+    }
+    return length > kMeant * tolerance;
   }
 
   /// Whether a curve stays within the tolerance of one of its ends.

@@ -93,10 +93,10 @@ class Polyhedron {
   std::vector<TopoDS_Shape> faces_;
 };
 
-constexpr double kTiny = 2e-5;
+constexpr double kTiny = 2e-6;  // OpenCASCADE's own tolerance of an edge is 1e-7
 
 /// A unit cube that has a tiny edge in the middle of its upper front edge.
-TopoDS_Solid cube_with_tiny_edge(double tolerance) {
+TopoDS_Solid cube_with_tiny_edge(double tolerance, double length = kTiny) {
   Polyhedron cube({{0, 0, 0},
                    {1, 0, 0},
                    {1, 1, 0},
@@ -106,7 +106,7 @@ TopoDS_Solid cube_with_tiny_edge(double tolerance) {
                    {1, 1, 1},
                    {0, 1, 1},
                    {0.5, 0, 1},
-                   {0.5 + kTiny, 0, 1}});
+                   {0.5 + length, 0, 1}});
   cube.set_tolerance(9, tolerance);
   cube.add_face({3, 2, 1, 0});
   cube.add_face({4, 8, 9, 5, 6, 7});
@@ -137,6 +137,15 @@ TEST(Repair, AnEdgeBeyondTheToleranceOfItsEndsStays) {
   EXPECT_EQ(model.value().vertices.size(), 10U);
   EXPECT_EQ(used_edges(model.value()), 14U);
   test::expect_sound(model.value(), "cube with a short edge");
+}
+
+// However generous its ends are: it is far longer than its own tolerance.
+TEST(Repair, AnEdgeThatIsExactStays) {
+  const double length = 20 * kTiny;
+  const Result<Model> model = convert(cube_with_tiny_edge(2 * length, length));
+  ASSERT_TRUE(model) << model.error().message;
+  EXPECT_EQ(model.value().vertices.size(), 10U);
+  EXPECT_EQ(used_edges(model.value()), 14U);
 }
 
 TEST(Repair, NoToleranceExplainsAVertexFarFromItsEdges) {
@@ -256,6 +265,30 @@ TEST(Repair, ManySolidsThatTouchShareTheirContacts) {
   EXPECT_EQ(model.faces.size(), 7U * 5 * 2 + 6 * 6 * 2 + 6 * 5 * 3);
   EXPECT_EQ(model.vertices.size(), 7U * 6 * 3);
   EXPECT_NEAR(test::total_volume(model), 60, 1e-9);
+}
+
+// Shorter than the tolerances of the solids: the fuse would leave a sliver between them.
+TEST(Repair, SolidsThatOverlapByAHairShareTheirContact) {
+  for (const double hair : {2e-6, 2e-5, 2e-4}) {
+    const TopoDS_Shape other = BRepPrimAPI_MakeBox(gp_Pnt(4 - hair, 1, 1), 2, 2, 2).Shape();
+    const Result<Model> result = convert(compound_of({box(), other}));
+    ASSERT_TRUE(result) << result.error().message;
+    const Model& model = result.value();
+    EXPECT_EQ(model.solids.size(), 2U);
+    EXPECT_EQ(model.faces.size(), 12U) << "one face is shared, and one of the larger box is split in two";
+    EXPECT_NEAR(test::total_volume(model), 72, 1e-2);
+  }
+}
+
+TEST(Repair, SolidsStayApartOnRequest) {
+  Context context;
+  ShapeOptions options;
+  options.joining.conformal = Conformal::off;
+  for (const TopoDS_Shape& other : {BRepPrimAPI_MakeBox(gp_Pnt(4, 1, 1), 2, 2, 2).Shape(), intruders()[0]}) {
+    const Result<Model> result = model_from_shape(compound_of({box(), other}), options, context);
+    ASSERT_TRUE(result) << result.error().message;
+    EXPECT_EQ(result.value().faces.size(), 12U);
+  }
 }
 
 TEST(Repair, SolidsApartAreNot) {

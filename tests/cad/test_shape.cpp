@@ -381,14 +381,14 @@ TEST(Shapes, LooseFacesWithAGapEncloseNothing) {
 }
 
 /// By more they are refused.
-TEST(Shapes, SolidsThatOverlapByAHairAreTold) {
+TEST(Shapes, SolidsThatOverlapByAHairAreJoined) {
   const TopoDS_Shape one = BRepPrimAPI_MakeBox(10, 10, 10).Shape();
   const TopoDS_Shape two = BRepPrimAPI_MakeBox(gp_Pnt(5, 5, 9.999), 10, 10, 10).Shape();
   const Result<Model> model = convert(compound_of({one, two}));
   ASSERT_TRUE(model) << model.error().message;
   EXPECT_EQ(model.value().solids.size(), 2U);
-  EXPECT_EQ(shared_faces(model.value()), 0U);
-  EXPECT_TRUE(has_note(model.value(), "overlaps"));
+  EXPECT_EQ(shared_faces(model.value()), 1U);
+  EXPECT_TRUE(has_note(model.value(), "overlap by a hair"));
 }
 
 /// One solid of two boxes that touch along an edge: its ends are shared, the edge itself is not.
