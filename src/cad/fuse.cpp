@@ -282,7 +282,7 @@ Result<Fusing> fuse_touching(CadBody& body, Overlaps overlaps, const std::string
     CadBody fused = body;
     const double tolerance = kTolerances[i] * diagonal;
     Fuse fuse(fused, tolerance);
-    const Result<Fusing> done = fuse.run(overlaps, source);
+    Result<Fusing> done = fuse.run(overlaps, source);
     if (fuse.overlaps_by_a_hair() && i + 1 < kTolerances.size()) continue;
     body = std::move(fused);
     if (i > 0 && done && done.value() == Fusing::imprinted)
