@@ -226,8 +226,31 @@ bool off_chord(Vec3 offset, Vec3 chord) {
   return std::abs(dot(offset, chord)) > 0.5 * length * length + kNoLength * length;
 }
 
+namespace {
+
+/// Delaunay in the mean of the corners' first fundamental forms.
+bool flip_improves_on_surface(const Corner& a, const Corner& b, const Corner& c, const Corner& d) {
+  double e = 0, f = 0, g = 0;
+  for (const Corner* corner : {&a, &b, &c, &d}) {
+    e += dot(corner->dx, corner->dx);
+    f += dot(corner->dx, corner->dy);
+    g += dot(corner->dy, corner->dy);
+  }
+  const double determinant = e * g - f * f;
+  if (!(determinant > 0)) return false;
+  const auto cotangent_at = [&](Vec2 apex, Vec2 p, Vec2 q) {
+    const Vec2 u = p - apex, v = q - apex;
+    const double inner = e * u.x * v.x + f * (u.x * v.y + u.y * v.x) + g * u.y * v.y;
+    return inner / (std::sqrt(determinant) * std::abs(cross(u, v)));
+  };
+  return cotangent_at(c.q, a.q, b.q) + cotangent_at(d.q, a.q, b.q) < -kFlipMargin;
+}
+
+}  // namespace
+
 bool flip_improves(const Corner& a, const Corner& b, const Corner& c, const Corner& d, FlipOrder order,
                    const ChartSurface& on) {
+  if (order == FlipOrder::on_surface) return flip_improves_on_surface(a, b, c, d);
   if (c.vertex == d.vertex) return false;
   const int flat_now = count(flat, a, b, c, b, a, d), flat_then = count(flat, a, d, c, d, b, c);
   if (flat_then != flat_now) return flat_then < flat_now;

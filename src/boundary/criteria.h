@@ -58,12 +58,14 @@ bool off_chord(Vec3 offset, Vec3 chord);
 /// What comes first where a flip cures the one and brings the other. While triangles are large, an edge that wraps
 /// around the surface makes everything next to it upright, and only edges that do not wrap lead out of that. Once they
 /// have their size, an upright triangle crosses its neighbours or other faces, and an edge that is bent in the chart
-/// does no harm: close to a pole, where the chart turns, there is none that is not.
-enum class FlipOrder : std::uint8_t { bends_first, upright_first };
+/// does no harm: close to a pole, where the chart turns, there is none that is not. Before both, on a face that wraps
+/// around, positions in space say nothing at all: triangles are judged on the surface, by the first fundamental form.
+enum class FlipOrder : std::uint8_t { on_surface, bends_first, upright_first };
 
 /// Whether triangles (a,b,c) and (b,a,d) should become (a,d,c) and (d,b,c). In order: fewer flat
 /// triangles, no bent edge and fewer upright triangles (in this or the other order), fewer degenerate ones, fewer that
-/// oppose the surface's normal, then Delaunay in space (angles at c and d exceed two right ones, with a margin).
+/// oppose the surface's normal, then Delaunay in space (angles at c and d exceed two right ones, with a margin). In the
+/// order on_surface: Delaunay in the mean first fundamental form of the corners, and nothing else.
 bool flip_improves(const Corner& a, const Corner& b, const Corner& c, const Corner& d, FlipOrder order,
                    const ChartSurface& on);
 

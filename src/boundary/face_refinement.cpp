@@ -26,6 +26,7 @@ constexpr double kLongEdge = 1.4;          ///< an edge over size that is split 
 constexpr double kEncroachHeight = 0.45;   ///< distance over size within which a diametral sphere counts
 constexpr std::size_t kLargestCavity = 64;
 constexpr int kLastRounds = 4;
+constexpr double kWraps = 1.1;  ///< an arc over its chord that goes around something
 
 enum class Need : std::uint8_t { none, shape, fold, size, bend };
 
@@ -61,6 +62,12 @@ class FaceRefiner {
   }
 
   std::vector<AddedVertex> run(const Context& context) {
+    if (wraps()) {
+      order_ = FlipOrder::on_surface;
+      enqueue(alive());
+      empty_queue(context);
+      order_ = FlipOrder::bends_first;
+    }
     mesh_.restore(alive(), wanted_, changed_);
     enqueue(alive());
     empty_queue(context);
@@ -91,6 +98,20 @@ class FaceRefiner {
     const auto middle = lengths.begin() + static_cast<std::ptrdiff_t>(lengths.size() / 2);
     std::nth_element(lengths.begin(), middle, lengths.end());
     usual_segment_ = *middle;
+  }
+
+  /// Whether some edge wraps around the surface, so that its ends are closer in space than on it. A pole has its own
+  /// ways.
+  bool wraps() const {
+    if (std::any_of(corners_.begin(), corners_.end(), at_pole)) return false;
+    for (const TriangleId id : alive()) {
+      const FaceTriangle& t = mesh_.triangle(id);
+      for (std::size_t i = 0; i < 3; ++i) {
+        const Corner &a = corner(t.node[(i + 1) % 3]), &b = corner(t.node[(i + 2) % 3]);
+        if (t.use[i] == -1 && arc_estimate(a, b) > kWraps * distance(a.position, b.position)) return true;
+      }
+    }
+    return false;
   }
 
   const Corner& corner(NodeId n) const { return corners_[n.value()]; }

@@ -92,6 +92,20 @@ PaperCounts paper_counts(const Model& model, double size) {
   return run_boundary(model, options)->paper;
 }
 
+// Nodes on both sides of the seam are in one place; before there are others, distances in space mean nothing.
+TEST(Recovery, ThinRingsHaveNoCrossingsToBeginWith) {
+  for (const double thickness : {0.3, 0.7}) {
+    const Model ring = test::make_torus(33, thickness);
+    test::BoundaryRunOptions options;
+    options.size = 19;
+    options.until = test::Until::crossings;
+    const auto run = test::run_boundary(ring, options);
+    EXPECT_EQ(run->crossings.first_pairs, 0U);
+    const double rows = options.curvature, columns = rows * 33 / thickness;
+    EXPECT_LT(static_cast<double>(run->boundary.faces[FaceId(0U)].triangle_count()), 4 * rows * columns);
+  }
+}
+
 TEST(PaperCounts, StageOneRefinesAndItsCancelRuleAllows) {
   const PaperCounts counts = paper_counts(make_tube(10, 9.5, 30), 5);
   ASSERT_FALSE(HasFailure());
