@@ -39,6 +39,8 @@ def parse_arguments():
     parser.add_argument("--options", default="", help="further options of `curvetet mesh`, separated by spaces")
     parser.add_argument("--cad-options", default="", help="options of all commands that read the CAD file, as "
                         "'--overlaps split'")
+    parser.add_argument("--apart", action="store_true", help="bodies whose solids overlap are meshed again with "
+                        "--conformal off, and checked and judged in parts; they are counted")
     parser.add_argument("--judge", type=pathlib.Path)
     parser.add_argument("--gmsh", action="store_true", help="mesh with gmsh at the same size, too, for comparison")
     parser.add_argument("--out", required=True, type=pathlib.Path)
@@ -120,10 +122,10 @@ class Corpus:
         flat = [x for side in box for x in side] if isinstance(box[0], list) else box
         return sum((flat[i + 3] - flat[i]) ** 2 for i in range(3)) ** 0.5, None
 
-    def judge(self, body, mesh, name, unit_scale=None):
+    def judge(self, body, mesh, name, apart=False):
         """Valid (None: not judged), failed findings, boundary triangles."""
         out = self.a.out / f"{name}.judge.json"
-        command = [self.a.judge, self.root / body, mesh, "--json", out]
+        command = [self.a.judge, self.root / body, mesh, "--json", out, *(["--parts"] if apart else [])]
         code, _, err, _ = run(command, 10 * self.a.time_limit, 0)
         verdict = read_json(out) or {}
         if code == 0:
@@ -139,16 +141,25 @@ class Corpus:
                 "name": f"{pathlib.Path(body).name}.{divisor:g}", "status": "failed", "cause": cause or ""}
 
     def mesh_all(self, rows):
-        """Has `curvetet batch` mesh the body of each row at its size; the rows get what became of it. Meshes and reports
-        are then in the output folder by the rows' names."""
+        """Has the body of each row meshed at its size, and again in parts where its solids overlap and that is asked."""
         rows = [row for row in rows if row["size"]]
+        self.mesh_batch(rows, [])
+        overlapping = [row for row in rows if row["cause"].startswith("mesh: overlapping_solids")]
+        if self.a.apart and overlapping:
+            for row in overlapping:
+                row["apart"] = True
+            self.mesh_batch(overlapping, ["--conformal", "off"])
+
+    def mesh_batch(self, rows, options):
+        """One `curvetet batch`; the rows get what became of it. Meshes and reports are then in the output folder by the
+        rows' names."""
         folder = self.a.out / "batch"
         folder.mkdir(parents=True, exist_ok=True)
         keys = {(str((self.root / row["body"]).resolve()), ("--size", repr(row["size"]))): row for row in rows}
         (folder / "list.txt").write_text("".join("\t".join((path, *options)) + "\n" for path, options in keys))
         command = [self.a.curvetet, "batch", folder / "list.txt", "--out", folder, "--jobs", self.a.jobs, "--time-limit",
                    self.a.time_limit, "--", "--unit", "mm", "--curvature", self.a.curvature,
-                   *self.a.cad_options.split(), *self.a.options.split()]
+                   *self.a.cad_options.split(), *self.a.options.split(), *options]
         code, _, _, _ = run(command, None, self.a.memory_limit, tell=True)
         if code not in (0, 5):
             sys.exit(f"curvetet batch ended with {code}")
@@ -182,8 +193,10 @@ class Corpus:
         return row
 
     def check(self, body, mesh, name, row):
+        apart = row.get("apart", False)
         code, out, err, row["check_seconds"] = run([self.a.curvetet, "check", "--json", mesh, self.root / body,
-                                                    *self.a.cad_options.split()],
+                                                    *self.a.cad_options.split(),
+                                                    *(["--conformal", "off"] if apart else [])],
                                                    self.a.time_limit, self.a.memory_limit)
         own = read_json(out) or {}
         row["triangles"] = own.get("counts", {}).get("triangles")
@@ -196,7 +209,7 @@ class Corpus:
             words = ", ".join(row["own_errors"]) or describe_failure("check", code, own, err)
             causes.append(f"check: {words}")
         if self.a.judge:
-            row["judge_valid"], row["judge_failed"], _ = self.judge(body, mesh, name)
+            row["judge_valid"], row["judge_failed"], _ = self.judge(body, mesh, name, apart)
             if row["judge_valid"] is not True:
                 causes.append("judge: " + ", ".join(map(str, row["judge_failed"])))
         row["cause"] = "; ".join(causes)
@@ -297,6 +310,10 @@ def summarize(rows, judged):
     for divisor in sorted({row["divide"] for row in rows}):
         here = [row for row in rows if row["divide"] == divisor]
         print(f"  /{divisor:g}: {sum(row['status'] == 'valid' for row in here)} of {len(here)}")
+    apart = [row for row in rows if row.get("apart")]
+    if apart:
+        print(f"of these with solids that overlap, meshed apart: {len(apart)}, "
+              f"valid {sum(row['status'] == 'valid' for row in apart)}")
     causes = collections.Counter(cause_key(row) for row in rows if row["status"] != "valid")
     for cause, count in causes.most_common():
         print(f"  {count:5}  {cause}")
