@@ -148,6 +148,7 @@ class CrossingCure {
       shortest = std::min(shortest, distance(p, conjoint_.vertices().position(a.vertices[(k + 1) % 3])));
     }
     failure.size = 0.5 * shortest;
+    failure.crossing = i != j;
     failure.proved = i != j && deviation_of(a) <= 8 * kGrid && deviation_of(b) <= 8 * kGrid;
     failure.what = failure.proved ? "flat facets that lie on their faces cross: the body crosses itself" : what;
     result_.failures.push_back(failure);

@@ -20,7 +20,8 @@ struct RecoveryFailure {
   Vec3 where;       ///< working coordinates
   double size = 0;  ///< that would do there
   std::string what;
-  bool proved = false;  ///< the body itself is at fault: flat faces cross
+  bool proved = false;    ///< the body itself is at fault: flat faces cross
+  bool crossing = false;  ///< facets of the two faces cross, whatever their size
 };
 
 struct CrossingOptions {

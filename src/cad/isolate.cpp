@@ -17,10 +17,12 @@
 #include <cstdlib>
 #include <cstring>
 #include <filesystem>
+#include <sstream>
 #include <thread>
 #include <vector>
 
 #include "base/child_program.h"
+#include "cad/confirm_crossing.h"
 #include "cad/guard.h"
 #include "cad/heal.h"
 #include "cad/read.h"
@@ -43,6 +45,20 @@ std::string word_of(const Joining& joining) {
   if (joining.conformal == Conformal::off) return kOff;
   const std::string word = joining.conformal == Conformal::strict ? kStrict : kAutomatic;
   return joining.overlaps == Overlaps::split ? word + "," + kSplit : word;
+}
+
+std::string list_of(const std::vector<std::uint32_t>& ids) {
+  std::string list;
+  for (const std::uint32_t id : ids) list += std::to_string(id) + ',';
+  return list;
+}
+
+std::vector<std::uint32_t> ids_of(const std::string& list) {
+  std::vector<std::uint32_t> ids;
+  std::istringstream in(list);
+  for (std::string id; std::getline(in, id, ',');)
+    ids.push_back(static_cast<std::uint32_t>(std::strtoul(id.c_str(), nullptr, 10)));
+  return ids;
 }
 
 Joining joining_of(const std::string& word) {
@@ -136,10 +152,11 @@ Result<CadBody> read_isolated(const std::string& path, const std::string& helper
   if (folder.path().empty()) return Error{ErrorCode::output_unwritable, "cannot make a temporary folder"};
   const std::string out_path = folder.path() + "/shape.bin";
   const double allowed = options.isolate_time_limit;
-  ChildProgram child(helper,
-                     {helper, kHelperFlag, path, out_path, options.input_unit,
-                      std::to_string(options.isolate_memory_limit), std::to_string(allowed), word_of(options.joining)},
-                     "/dev/null", {std::string(kHelperVariable) + "=1", end_with_parent_variable()});
+  ChildProgram child(
+      helper,
+      {helper, kHelperFlag, path, out_path, options.input_unit, std::to_string(options.isolate_memory_limit),
+       std::to_string(allowed), word_of(options.joining), list_of(options.suspects)},
+      "/dev/null", {std::string(kHelperVariable) + "=1", end_with_parent_variable()});
   if (!child.started()) return Error{ErrorCode::bad_option, "cannot start the helper program " + helper};
   const auto start = Clock::now();
   auto pause = std::chrono::milliseconds(1);
@@ -168,7 +185,7 @@ Result<CadBody> read_isolated(const std::string& path, const std::string& helper
 
 int run_cad_helper(int argc, char** argv) {
   constexpr int kUsage = 2, kUnwritable = 3;
-  if (argc != 8 || std::string(argv[1]) != kHelperFlag) return kUsage;
+  if (argc != 9 || std::string(argv[1]) != kHelperFlag) return kUsage;
   const std::string path = argv[2], out_path = argv[3], unit = argv[4];
   end_with_parent();
   limit_this_process(std::strtoull(argv[5], nullptr, 10), std::strtod(argv[6], nullptr));
@@ -176,6 +193,10 @@ int run_cad_helper(int argc, char** argv) {
   Result<CadBody> body = read_body(path, unit);
   if (!body) return write_transfer(body.error(), out_path) ? 0 : kUnwritable;
   const Result<Model> model = heal_and_convert(body.value(), path, joining_of(argv[7]));
+  if (const std::vector<std::uint32_t> suspects = ids_of(argv[8]); model && !suspects.empty()) {
+    if (const auto crossing = confirm_crossing(body.value(), suspects, path))
+      return write_transfer(*crossing, out_path) ? 0 : kUnwritable;
+  }
   const bool written = model ? write_transfer(body.value(), out_path) : write_transfer(model.error(), out_path);
   return written ? 0 : kUnwritable;
 }

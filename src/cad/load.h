@@ -2,7 +2,9 @@
 // OpenCASCADE.
 #pragma once
 
+#include <cstdint>
 #include <string>
+#include <vector>
 
 #include "base/context.h"
 #include "base/error.h"
@@ -17,6 +19,8 @@ struct LoadOptions {
   bool isolate = true;  ///< read and heal in a helper process, so that a crash or a loop there becomes a message
   double isolate_time_limit = 60;                            ///< seconds
   std::size_t isolate_memory_limit = std::size_t{4} << 30U;  ///< bytes
+  /// Faces (cad ids) that a mesh lets cross: if the CAD kernel confirms it, that is an error (self_intersection).
+  std::vector<std::uint32_t> suspects{};
   std::string helper;  ///< program that serves as helper ("curvetet" itself); empty: this executable
 };
 

@@ -2,7 +2,9 @@
 #pragma once
 
 #include <TopoDS_Shape.hxx>
+#include <cstdint>
 #include <string>
+#include <vector>
 
 #include "base/context.h"
 #include "base/error.h"
@@ -16,6 +18,7 @@ struct ShapeOptions {
   std::string unit = "mm";  ///< of the shape's coordinates
   ShapeLabels labels;
   Joining joining;
+  std::vector<std::uint32_t> suspects{};  ///< as LoadOptions::suspects
 };
 
 /// Ids are those of TopExp::MapShapes on the shape. Repairs, where the shape needs any, run in this process, on a copy:

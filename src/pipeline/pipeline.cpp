@@ -38,9 +38,15 @@ std::string file_hash(const std::string& path) {
 /// The stages from sizes to the finished mesh, for a whole body or a part of one.
 class BodyRun {
  public:
-  BodyRun(const Model& model, const Settings& settings, const Options& options, StageClock& clock, Context& context,
-          Report& report)
-      : model_(model), settings_(settings), options_(options), clock_(clock), context_(context), report_(report) {}
+  BodyRun(const Source& source, const Model& model, const Settings& settings, const Options& options, StageClock& clock,
+          Context& context, Report& report)
+      : source_(source),
+        model_(model),
+        settings_(settings),
+        options_(options),
+        clock_(clock),
+        context_(context),
+        report_(report) {}
 
   Result<Mesh> operator()() {
     const Status boundary = mesh_boundary_stages();
@@ -66,7 +72,22 @@ class BodyRun {
     report_.rounds = std::max(report_.rounds, body_.rounds);
     if (body_.failures.empty()) return Done{};
     for (const RecoveryFailure& f : body_.failures) report_.errors.push_back(to_error(f, model_, settings_));
+    confirm_first();
     return report_.errors.front();
+  }
+
+  /// The CAD kernel is asked about the first crossing only: it reads the body again for that.
+  void confirm_first() {
+    const RecoveryFailure& failure = body_.failures.front();
+    if (!failure.crossing || failure.proved || !source_.confirm_crossing) return;
+    std::vector<std::uint32_t> faces;
+    for (const FaceId f : failure.faces) faces.push_back(model_.faces[f].label.cad_id);
+    const std::optional<Error> confirmed = source_.confirm_crossing(faces, context_);
+    if (!confirmed || confirmed->code != ErrorCode::self_intersection) return;
+    Error& error = report_.errors.front();
+    error.code = confirmed->code;
+    error.message += "; " + confirmed->message;
+    error.hint = confirmed->hint;
   }
 
   Status mesh_volume_stages() {
@@ -87,6 +108,7 @@ class BodyRun {
     return Done{};
   }
 
+  const Source& source_;
   const Model& model_;
   const Settings& settings_;
   const Options& options_;
@@ -113,7 +135,8 @@ class Run {
     context_.seed = options_.seed;
     const Status loaded = load();
     if (!loaded.ok()) return loaded.error();
-    Result<Mesh> mesh = apart() ? mesh_parts() : BodyRun(model_, settings_, options_, clock_, context_, report_)();
+    Result<Mesh> mesh =
+        apart() ? mesh_parts() : BodyRun(source_, model_, settings_, options_, clock_, context_, report_)();
     if (!mesh.ok()) return mesh.error();
     return finish(std::move(mesh.value()));
   }
@@ -147,7 +170,8 @@ class Run {
       const double share = (kVolumeDone - kLoadDone) / static_cast<double>(parts.size());
       clock_.set_span(kLoadDone + static_cast<double>(i) * share, share);
       const Part part = make_part(model_, parts[i]);
-      Result<Mesh> made = BodyRun(part.model, settings_of(part, settings_), options_, clock_, context_, report_)();
+      Result<Mesh> made =
+          BodyRun(source_, part.model, settings_of(part, settings_), options_, clock_, context_, report_)();
       if (!made.ok()) return made.error();
       append(mesh, made.value(), part);
     }
@@ -199,14 +223,18 @@ Result<MeshOutput> mesh(const Input& input, const Options& options, Context& con
   Source source;
   source.name = input.path;
   source.hash = [&] { return file_hash(input.path); };
-  source.load = [&](Context& while_loading) {
-    LoadOptions load;
-    load.input_unit = options.input_unit;
-    load.isolate = options.isolate_cad;
-    load.helper = options.cad_helper;
-    load.joining = {options.conformal, options.overlaps};
-    if (options.time_limit) load.isolate_time_limit = std::max(load.isolate_time_limit, *options.time_limit);
-    return load_model(input.path, load, while_loading);
+  LoadOptions load;
+  load.input_unit = options.input_unit;
+  load.isolate = options.isolate_cad;
+  load.helper = options.cad_helper;
+  load.joining = {options.conformal, options.overlaps};
+  if (options.time_limit) load.isolate_time_limit = std::max(load.isolate_time_limit, *options.time_limit);
+  source.load = [&](Context& while_loading) { return load_model(input.path, load, while_loading); };
+  source.confirm_crossing = [&](const std::vector<std::uint32_t>& faces, Context& while_loading) {
+    LoadOptions again = load;
+    again.suspects = faces;
+    const Result<Model> model = load_model(input.path, again, while_loading);
+    return model ? std::optional<Error>() : std::optional(model.error());
   };
   return mesh_source(source, options, context, report_on_failure);
 }

@@ -1,8 +1,11 @@
 // The stages in order, for a body from wherever: a file or a shape in memory.
 #pragma once
 
+#include <cstdint>
 #include <functional>
+#include <optional>
 #include <string>
+#include <vector>
 
 #include "curvetet/curvetet.h"
 #include "geometry/model.h"
@@ -13,6 +16,8 @@ namespace curvetet {
 struct Source {
   std::string name;  ///< what messages and the report call it
   std::function<Result<Model>(Context&)> load;
+  /// Whether the CAD kernel, too, says that these faces (cad ids) cross; empty: nobody can tell.
+  std::function<std::optional<Error>(const std::vector<std::uint32_t>&, Context&)> confirm_crossing;
   std::function<std::string()> hash;  ///< of its bytes, asked for once loading went well; empty if it has none
 };
 
