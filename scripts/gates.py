@@ -50,7 +50,7 @@ def corpus_with(arguments, gate, curvature):
     settings.out = arguments.out / gate
     settings.out.mkdir(parents=True, exist_ok=True)
     settings.root, settings.list, settings.gmsh = arguments.bodies, arguments.bodies / "-", False
-    settings.curvature, settings.cad_options = curvature, ""
+    settings.curvature, settings.cad_options, settings.apart = curvature, "", False
     return Corpus(settings)
 
 
