@@ -1,0 +1,154 @@
+#!/usr/bin/env python3
+"""curvetet and its peers on the same bodies at the same sizes, under the same limits and the same judge, as a table.
+
+Peers are Debian's programs: gmsh with its Delaunay and its HXT algorithm, and netgen. One that is not installed is left
+out, and the table says so. Each gets the size, and 12 elements per turn where it knows such a thing; all else is as it
+comes. The judge is as in corpus.py. A mesh counts only if the program ended with 0 in time and the judge passes.
+
+    scripts/compare.py --list bodies.txt --divide 20 --curvetet build/release/apps/curvetet/curvetet --judge judge \\
+        --out out/compare --page docs/comparison.md
+"""
+import argparse
+import concurrent.futures
+import json
+import pathlib
+import shutil
+import statistics
+import subprocess
+import sys
+
+from corpus import Corpus, quantile, read_json, run
+
+NETGEN = """
+import sys
+from netgen.NgOCC import LoadOCCGeometry
+from netgen.meshing import MeshingParameters
+geometry = LoadOCCGeometry(sys.argv[1])
+mesh = geometry.GenerateMesh(mp=MeshingParameters(maxh=float(sys.argv[2]), curvaturesafety=12 / 6.283185307))
+mesh.Export(sys.argv[3], "Gmsh2 Format")
+"""
+
+
+def gmsh(algorithm):
+    def command(body, size, mesh, curvature):
+        return ["gmsh", "-3", body, "-o", mesh, "-format", "msh41", "-nt", "1", "-setnumber", "Mesh.MeshSizeMax", size,
+                "-setnumber", "Mesh.MeshSizeFromCurvature", curvature, "-setnumber", "Mesh.Algorithm3D", algorithm]
+    return command
+
+
+def netgen(body, size, mesh, _):
+    """Debian's reads STEP only."""
+    return [PYTHON, "-c", NETGEN, body, size, mesh] if body.suffix.lower() in (".step", ".stp") else None
+
+
+PYTHON = next((p for p in ("/usr/bin/python3", sys.executable)
+               if subprocess.run([p, "-c", "import netgen.NgOCC"], capture_output=True, check=False).returncode == 0), None)
+
+
+def programs(arguments):
+    """Name, command, and whether it is there."""
+    def own(body, size, mesh, curvature):
+        return [arguments.curvetet, "mesh", body, "-o", mesh, "-q", "--unit", "mm", "--threads", "1", "--size", size,
+                "--curvature", curvature]
+
+    has_gmsh = shutil.which("gmsh") is not None
+    return [("curvetet", own, True), ("gmsh, Delaunay", gmsh(1), has_gmsh), ("gmsh, HXT", gmsh(10), has_gmsh),
+            ("netgen", netgen, PYTHON is not None)]
+
+
+class Comparison:
+    def __init__(self, arguments):
+        self.a = arguments
+        settings = argparse.Namespace(**vars(arguments), root=arguments.list.parent, cad_options="", apart=False)
+        self.corpus = Corpus(settings)
+
+    def measure(self, job):
+        body, divisor, name, command = job
+        diagonal, _ = self.corpus.diagonal(body)
+        row = {"body": body, "divide": divisor, "program": name, "valid": False}
+        stem = f"{pathlib.Path(body).name}.{divisor:g}.{name.replace(', ', '-').lower()}"
+        mesh = self.a.out / (stem + ".msh")
+        words = diagonal and command(self.corpus.root / body, repr(diagonal / divisor), mesh, self.a.curvature)
+        if not words:
+            return row | {"left_out": True}
+        mesh.unlink(missing_ok=True)
+        code, _, _, row["seconds"] = run(words, self.a.time_limit, self.a.memory_limit)
+        row["exit"] = code
+        if code == 0 and mesh.is_file():
+            row["valid"], row["failed"], _ = self.corpus.judge(body, mesh, stem)
+            _, out, _, _ = run([self.a.curvetet, "check", "--json", mesh], self.a.time_limit, self.a.memory_limit)
+            row["triangles"] = (read_json(out) or {}).get("counts", {}).get("triangles")
+            row["tets"] = (read_json(out) or {}).get("counts", {}).get("tets")
+        mesh.unlink(missing_ok=True)
+        return row
+
+
+def table(rows, divisors, names, missing):
+    """Lines of markdown: for each program and size what became of the bodies."""
+    lines = ["| program | size | bodies | valid | no mesh | invalid | median seconds of the valid | triangles over curvetet's |",
+             "|---|---|---|---|---|---|---|---|"]
+    own = {(row["body"], row["divide"]): row for row in rows if row["program"] == "curvetet"}
+    for name in names:
+        for divisor in divisors:
+            here = [row for row in rows if row["program"] == name and row["divide"] == divisor and "left_out" not in row]
+            valid = [row for row in here if row["valid"] is True]
+            no_mesh = [row for row in here if "tets" not in row]
+            ratios = [row["triangles"] / own[row["body"], divisor]["triangles"] for row in valid
+                      if own[row["body"], divisor]["valid"] is True and row["triangles"]]
+            seconds = f"{statistics.median(row['seconds'] for row in valid):.2f}" if valid else "-"
+            ratio = f"{statistics.median(ratios):.2f}, 95 %: {quantile(ratios, 0.95):.2f}" if ratios else "-"
+            share = 100 * len(valid) / max(1, len(here))
+            lines.append(f"| {name} | D/{divisor:g} | {len(here)} | {len(valid)} ({share:.1f} %) | {len(no_mesh)} | "
+                         f"{len(here) - len(valid) - len(no_mesh)} | {seconds} | {ratio} |")
+    lines += [f"\n{name} was not installed." for name in missing]
+    return lines
+
+
+def write_page(page, lines):
+    """Replaces what is between the markers."""
+    text = page.read_text()
+    begin, end = "<!-- table: begin -->", "<!-- table: end -->"
+    head, rest = text.split(begin)
+    page.write_text(head + begin + "\n" + "\n".join(lines) + "\n" + end + rest.split(end)[1])
+
+
+def parse_arguments():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--list", required=True, type=pathlib.Path)
+    parser.add_argument("--divide", default="20", help="divisors of the diagonal, separated by commas")
+    parser.add_argument("--curvature", type=float, default=12)
+    parser.add_argument("--jobs", type=int, default=1, help="more than one spoils the times")
+    parser.add_argument("--time-limit", type=float, default=120)
+    parser.add_argument("--memory-limit", type=float, default=4, help="GiB of address space")
+    parser.add_argument("--curvetet", required=True, type=pathlib.Path)
+    parser.add_argument("--judge", required=True, type=pathlib.Path)
+    parser.add_argument("--out", required=True, type=pathlib.Path)
+    parser.add_argument("--page", type=pathlib.Path, help="page whose table is replaced")
+    return parser.parse_args()
+
+
+def main():
+    arguments = parse_arguments()
+    arguments.out.mkdir(parents=True, exist_ok=True)
+    bodies = [line.strip() for line in arguments.list.read_text().splitlines() if line.strip() and line[0] != "#"]
+    divisors = [float(d) for d in arguments.divide.split(",")]
+    there = [(name, command) for name, command, installed in programs(arguments) if installed]
+    missing = [name for name, _, installed in programs(arguments) if not installed]
+    comparison = Comparison(arguments)
+    jobs = [(body, divisor, name, command) for body in bodies for divisor in divisors for name, command in there]
+    rows = []
+    with open(arguments.out / "comparison.jsonl", "w") as results, \
+            concurrent.futures.ThreadPoolExecutor(max_workers=arguments.jobs) as pool:
+        for row in pool.map(comparison.measure, jobs):
+            rows.append(row)
+            results.write(json.dumps(row) + "\n")
+            results.flush()
+    lines = table(rows, divisors, [name for name, _ in there], missing)
+    print("\n".join(lines))
+    if arguments.page:
+        write_page(arguments.page, lines)
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
