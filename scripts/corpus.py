@@ -39,8 +39,8 @@ def parse_arguments():
     parser.add_argument("--options", default="", help="further options of `curvetet mesh`, separated by spaces")
     parser.add_argument("--cad-options", default="", help="options of all commands that read the CAD file, as "
                         "'--overlaps split'")
-    parser.add_argument("--apart", action="store_true", help="bodies whose solids overlap are meshed again with "
-                        "--conformal off, and checked and judged in parts; they are counted")
+    parser.add_argument("--apart", action="store_true", help="bodies that fail, as those whose solids overlap, are "
+                        "meshed again with --conformal off, and checked and judged in parts; they are counted")
     parser.add_argument("--judge", type=pathlib.Path)
     parser.add_argument("--gmsh", action="store_true", help="mesh with gmsh at the same size, too, for comparison")
     parser.add_argument("--out", required=True, type=pathlib.Path)
@@ -141,14 +141,14 @@ class Corpus:
                 "name": f"{pathlib.Path(body).name}.{divisor:g}", "status": "failed", "cause": cause or ""}
 
     def mesh_all(self, rows):
-        """Has the body of each row meshed at its size, and again in parts where its solids overlap and that is asked."""
+        """Has the body of each row meshed at its size, and where that fails and it is asked, again in parts."""
         rows = [row for row in rows if row["size"]]
         self.mesh_batch(rows, [])
-        overlapping = [row for row in rows if row["cause"].startswith("mesh: overlapping_solids")]
-        if self.a.apart and overlapping:
-            for row in overlapping:
-                row["apart"] = True
-            self.mesh_batch(overlapping, ["--conformal", "off"])
+        failed = [row for row in rows if row["cause"]]
+        if self.a.apart and failed:
+            for row in failed:
+                row["apart"], row["cause_together"] = True, row["cause"]
+            self.mesh_batch(failed, ["--conformal", "off"])
 
     def mesh_batch(self, rows, options):
         """One `curvetet batch`; the rows get what became of it. Meshes and reports are then in the output folder by the
@@ -312,7 +312,7 @@ def summarize(rows, judged):
         print(f"  /{divisor:g}: {sum(row['status'] == 'valid' for row in here)} of {len(here)}")
     apart = [row for row in rows if row.get("apart")]
     if apart:
-        print(f"of these with solids that overlap, meshed apart: {len(apart)}, "
+        print(f"of these meshed apart, as their solids cannot be joined: {len(apart)}, "
               f"valid {sum(row['status'] == 'valid' for row in apart)}")
     causes = collections.Counter(cause_key(row) for row in rows if row["status"] != "valid")
     for cause, count in causes.most_common():

@@ -118,7 +118,7 @@ Status leave_apart(Attempt& best, const std::string& source, Conformal conformal
                  {},
                  "imprint the solids in the CAD system, or ask for less than strict conformity"};
   }
-  const HealingNote note{"file", why};
+  const HealingNote note{"file", why + " (--conformal off meshes them apart)"};
   best.body.notes.push_back(note);
   best.model.value().healing.push_back(note);
   return Done{};
