@@ -40,10 +40,15 @@ class Context {
   void log(LogLevel level, std::string_view message) const {
     if (on_log) on_log(level, message);
   }
-  /// Reports progress within the stage that occupies [begin, end] of the run.
-  void progress(std::string_view stage, double fraction);
+  /// Reports that a stage begins, which occupies [begin, end] of the run.
+  void progress(std::string_view stage, double begin, double end);
+  void progress(std::string_view stage, double fraction) { progress(stage, fraction, fraction); }
+  /// Reports the share of the running stage that is done. Not to be called from several threads.
+  void advance(double share);
 
  private:
+  std::string stage_;
+  double stage_begin_ = 0, stage_end_ = 0;
   std::atomic<bool> cancelled_{false};
   double reported_ = 0;
 };

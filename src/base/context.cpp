@@ -18,9 +18,17 @@ Error Context::stop_error(std::string_view stage) const {
           "raise --time-limit or ask for a larger --size"};
 }
 
-void Context::progress(std::string_view stage, double fraction) {
+void Context::progress(std::string_view stage, double begin, double end) {
+  stage_ = stage;
+  stage_begin_ = begin;
+  stage_end_ = end;
+  advance(0);
+}
+
+void Context::advance(double share) {
+  const double fraction = stage_begin_ + std::clamp(share, 0.0, 1.0) * (stage_end_ - stage_begin_);
   reported_ = std::max(reported_, std::clamp(fraction, 0.0, 1.0));
-  if (on_progress) on_progress(stage, reported_);
+  if (on_progress) on_progress(stage_, reported_);
 }
 
 void parallel_for(const Context& context, std::size_t n, const std::function<void(std::size_t)>& body) {

@@ -96,6 +96,7 @@ class FaceRecovery {
       if (context_.should_stop()) return context_.stop_error("face recovery");
       if (!recovered_[face]) march(face);
       done += recovered_[face] ? 1U : 0U;
+      context_.advance(static_cast<double>(done) / static_cast<double>(recovered_.size()));
     }
     context_.log(LogLevel::debug,
                  fmt::format("round {}: {} of {} faces after the march", result_.rounds, done, recovered_.size()));

@@ -64,7 +64,7 @@ class BodyMesher {
   }
 
   Result<Failures> attempt(BodyMesh& body) {
-    clock_.start("curves and faces", 0.1);
+    clock_.start("curves and faces", 0.1, 0.25);
     auto front = mesh_boundary(model_, sizes_, body.vertices, BoundaryOptions{}, context_);
     if (!front.ok()) return front.error();
     body.boundary = std::move(front.value().mesh);
@@ -75,7 +75,7 @@ class BodyMesher {
     });
 
     if (mode_ == RecoveryMode::conjoint) {
-      clock_.start("crossings", 0.25);
+      clock_.start("crossings", 0.25, 0.3);
       auto crossings = cure_crossings(*body.conjoint, {settings_.floor}, context_);
       if (!crossings.ok()) return crossings.error();
       body.crossings = crossings.value();
@@ -99,19 +99,19 @@ class BodyMesher {
   }
 
   Result<Failures> tetrahedralize(BodyMesh& body) {
-    clock_.start("tetrahedralization", 0.3);
+    clock_.start("tetrahedralization", 0.3, 0.35);
     body.tets = std::make_unique<Tetrahedralization>(body.vertices, context_.seed);
     const Status built = body.tets->build(used_vertices(body), context_);
     if (!built.ok()) return built.error();
     body.conjoint->attach(body.tets.get());
 
-    clock_.start("recovery", 0.35);
+    clock_.start("recovery", 0.35, 0.5);
     const Status recovered = recover(body);
     if (!recovered.ok()) return recovered.error();
     if (!body.recovery.failures.empty()) return body.recovery.failures;
     if (const Failures shared = shared_edges(body); !shared.empty()) return shared;
 
-    clock_.start("classification", 0.5);
+    clock_.start("classification", 0.5, 0.55);
     body.classified = classify(*body.conjoint);
     own_points(*body.conjoint);
     return body.classified.failures;

@@ -61,7 +61,7 @@ class BodyRun {
 
  private:
   Status mesh_boundary_stages() {
-    clock_.start("size field", 0.05);
+    clock_.start("size field", 0.05, 0.1);
     auto sizes = make_size_field(model_, settings_.sizing, context_);
     if (!sizes.ok()) return sizes.error();
     sizes_ = std::move(sizes.value());
@@ -93,7 +93,7 @@ class BodyRun {
   Status mesh_volume_stages() {
     BodyMesh& body = *body_.mesh;
     if (options_.refine_interior) {
-      clock_.start("interior points", 0.55);
+      clock_.start("interior points", 0.55, 0.75);
       RefineOptions refine;
       refine.radius_edge = options_.radius_edge;
       auto refined = refine_interior(*body.tets, body.vertices, sizes_, refine, context_);
@@ -101,7 +101,7 @@ class BodyRun {
       report_.unmet_tets += refined.value().unmet;
     }
     if (options_.improve) {
-      clock_.start("improvement", 0.75);
+      clock_.start("improvement", 0.75, 0.92);
       auto improved = improve(*body.tets, body.vertices, ImproveOptions{}, context_);
       if (!improved.ok()) return improved.error();
     }
@@ -150,7 +150,7 @@ class Run {
   bool apart() const { return options_.conformal == Conformal::off; }
 
   Status load() {
-    clock_.start("load", 0);
+    clock_.start("load", 0, kLoadDone);
     auto model = source_.load(context_);
     if (!model.ok()) return model.error();
     model_ = std::move(model.value());
@@ -181,7 +181,7 @@ class Run {
   }
 
   Result<Mesh> finish(Mesh mesh) {
-    clock_.start("validation", kVolumeDone);
+    clock_.start("validation", kVolumeDone, 1);
     const ValidationReport validation =
         (apart() ? validate_parts : validate)(mesh, &model_, settings_.unit_scale, context_);
     if (!validation.valid() && context_.should_stop()) return context_.stop_error("validation");

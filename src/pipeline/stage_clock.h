@@ -21,12 +21,13 @@ class StageClock {
     span_share_ = share;
   }
 
-  /// Ends the running stage and starts the next; `progress` is the share of the whole run done when it starts.
-  void start(std::string_view stage, double progress) {
+  /// Ends the running stage and starts the next; `progress` and `end` are the shares of the whole run done when it
+  /// starts and ends.
+  void start(std::string_view stage, double progress, double end) {
     stop();
     stage_ = stage;
     begin_ = std::chrono::steady_clock::now();
-    context_->progress(stage, span_begin_ + span_share_ * progress);
+    context_->progress(stage, span_begin_ + span_share_ * progress, span_begin_ + span_share_ * end);
   }
   void stop() {
     if (stage_.empty()) return;

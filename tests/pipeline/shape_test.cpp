@@ -11,7 +11,9 @@
 #include <TopExp_Explorer.hxx>
 #include <TopTools_IndexedMapOfShape.hxx>
 #include <TopoDS_Compound.hxx>
+#include <algorithm>
 #include <filesystem>
+#include <set>
 #include <sstream>
 
 #include "curvetet/occt.h"
@@ -115,6 +117,20 @@ TEST(MeshOfAShape, CancelInAnyStageIsNoOtherError) {
     EXPECT_EQ(made.error().code, ErrorCode::cancelled) << at;
     EXPECT_FALSE(report.stages.empty()) << "what is finished is kept";
   }
+}
+
+TEST(MeshOfAShape, ProgressRisesWithTheFacesRecovered) {
+  std::vector<double> all;
+  std::set<double> in_recovery;
+  Context context;
+  context.on_progress = [&](std::string_view stage, double fraction) {
+    all.push_back(fraction);
+    if (stage == "recovery") in_recovery.insert(fraction);
+  };
+  ASSERT_TRUE(mesh(block_with_bore(), Options{}, context));
+  EXPECT_TRUE(std::is_sorted(all.begin(), all.end()));
+  EXPECT_EQ(all.back(), 1);
+  EXPECT_GE(in_recovery.size(), 7U) << "a step for each of seven faces";
 }
 
 /// Loose faces are sewn, which changes tolerances and merges edges: in a copy.
