@@ -7,6 +7,7 @@
 #include "boundary/face_refinement.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 #include <queue>
@@ -101,8 +102,11 @@ class FaceRefiner {
   }
 
   /// Whether some edge wraps around the surface, so that its ends are closer in space than on it. A pole has its own
-  /// ways.
+  /// ways; and where the first fundamental form varies at will, its mean over large triangles misleads.
   bool wraps() const {
+    const std::array kinds{SurfaceKind::cylinder, SurfaceKind::cone, SurfaceKind::torus, SurfaceKind::revolution,
+                           SurfaceKind::extrusion};
+    if (std::find(kinds.begin(), kinds.end(), surface_.kind()) == kinds.end()) return false;
     if (std::any_of(corners_.begin(), corners_.end(), at_pole)) return false;
     for (const TriangleId id : alive()) {
       const FaceTriangle& t = mesh_.triangle(id);
