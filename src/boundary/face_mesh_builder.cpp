@@ -154,12 +154,6 @@ class FaceBuilder {
       round.faults = mesh.build(input);
     }
     round.built = round.faults.empty();
-    if (last_round && !round.faults.empty() && getenv("DBGT")) {
-      for (auto& f : round.faults) fprintf(stderr, "fault %s %d.%zu %d.%zu\n", f.what.c_str(), f.use_a, f.segment_a, f.use_b, f.segment_b);
-      for (auto& l : round.input.loops) for (auto& c : l.chains) { bool in=false; for (auto& f : round.faults) in = in || f.use_a==c.use || f.use_b==c.use; if(!in) continue;
-        fprintf(stderr, "chain %d edge %u tol %g true %g\n", c.use, model_.edges[uses_[c.use]->edge].label.cad_id, use_tolerance(*uses_[c.use]), true_tolerance(*uses_[c.use]));
-        for (size_t i=0;i<c.q.size();++i) fprintf(stderr, "   %zu %.9f %.9f\n", i, c.q[i].x, c.q[i].y); }
-    }
     for (const LoopFault& fault : round.faults) request(fault, round.split);
     return round;
   }
