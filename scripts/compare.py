@@ -6,7 +6,7 @@ out, and the table says so. Each gets the size, and 12 elements per turn where i
 comes. The judge is as in corpus.py. A mesh counts only if the program ended with 0 in time and the judge passes.
 
     scripts/compare.py --list bodies.txt --divide 20 --curvetet build/release/apps/curvetet/curvetet --judge judge \\
-        --out out/compare --page docs/comparison.md
+        --out out/compare --page page.md
 """
 import argparse
 import concurrent.futures
@@ -123,7 +123,8 @@ def parse_arguments():
     parser.add_argument("--curvetet", required=True, type=pathlib.Path)
     parser.add_argument("--judge", required=True, type=pathlib.Path)
     parser.add_argument("--out", required=True, type=pathlib.Path)
-    parser.add_argument("--page", type=pathlib.Path, help="page whose table is replaced")
+    parser.add_argument("--page", type=pathlib.Path, help="page whose table, between <!-- table: begin --> and "
+                        "<!-- table: end -->, is replaced")
     return parser.parse_args()
 
 
