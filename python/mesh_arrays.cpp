@@ -62,8 +62,7 @@ py::array_t<std::uint32_t> node_entities(const Mesh& mesh) {
   auto out = ids.mutable_unchecked<1>();
   for (std::size_t i = 0; i < mesh.nodes.size(); ++i) {
     const NodeOnCad& node = mesh.nodes[i];
-    const std::vector<Entity>& entities = entities_of(mesh, node.dimension);
-    out(static_cast<py::ssize_t>(i)) = node.entity < entities.size() ? entities[node.entity].cad_id : 0;
+    out(static_cast<py::ssize_t>(i)) = entities_of(mesh, node.dimension)[node.entity].cad_id;
   }
   return ids;
 }

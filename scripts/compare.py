@@ -17,28 +17,25 @@ import statistics
 import subprocess
 import sys
 
-from corpus import Corpus, quantile, read_json, run
+from corpus import Corpus, common_parser, gmsh_command, quantile, read_divisors, read_json, read_list, run
 
 NETGEN = """
 import sys
 from netgen.NgOCC import LoadOCCGeometry
 from netgen.meshing import MeshingParameters
 geometry = LoadOCCGeometry(sys.argv[1])
-mesh = geometry.GenerateMesh(mp=MeshingParameters(maxh=float(sys.argv[2]), curvaturesafety=12 / 6.283185307))
+mesh = geometry.GenerateMesh(mp=MeshingParameters(maxh=float(sys.argv[2]), curvaturesafety=float(sys.argv[4]) / 6.283185307))
 mesh.Export(sys.argv[3], "Gmsh2 Format")
 """
 
 
 def gmsh(algorithm):
-    def command(body, size, mesh, curvature):
-        return ["gmsh", "-3", body, "-o", mesh, "-format", "msh41", "-nt", "1", "-setnumber", "Mesh.MeshSizeMax", size,
-                "-setnumber", "Mesh.MeshSizeFromCurvature", curvature, "-setnumber", "Mesh.Algorithm3D", algorithm]
-    return command
+    return lambda body, size, mesh, curvature: gmsh_command(body, size, mesh, curvature, algorithm)
 
 
-def netgen(body, size, mesh, _):
+def netgen(body, size, mesh, curvature):
     """Debian's reads STEP only."""
-    return [PYTHON, "-c", NETGEN, body, size, mesh] if body.suffix.lower() in (".step", ".stp") else None
+    return [PYTHON, "-c", NETGEN, body, size, mesh, curvature] if body.suffix.lower() in (".step", ".stp") else None
 
 
 PYTHON = next((p for p in ("/usr/bin/python3", sys.executable)
@@ -59,8 +56,7 @@ def programs(arguments):
 class Comparison:
     def __init__(self, arguments):
         self.a = arguments
-        settings = argparse.Namespace(**vars(arguments), root=arguments.list.parent, cad_options="", apart=False)
-        self.corpus = Corpus(settings)
+        self.corpus = Corpus(argparse.Namespace(**vars(arguments), cad_options=""))
 
     def measure(self, job):
         body, divisor, name, command = job
@@ -68,8 +64,10 @@ class Comparison:
         row = {"body": body, "divide": divisor, "program": name, "valid": False}
         stem = f"{pathlib.Path(body).name}.{divisor:g}.{name.replace(', ', '-').lower()}"
         mesh = self.a.out / (stem + ".msh")
-        words = diagonal and command(self.corpus.root / body, repr(diagonal / divisor), mesh, self.a.curvature)
-        if not words:
+        if diagonal is None:  # unreadable, and counted: no program is asked
+            return row
+        words = command(self.corpus.root / body, repr(diagonal / divisor), mesh, self.a.curvature)
+        if words is None:
             return row | {"left_out": True}
         mesh.unlink(missing_ok=True)
         code, _, _, row["seconds"] = run(words, self.a.time_limit, self.a.memory_limit)
@@ -113,26 +111,20 @@ def write_page(page, lines):
 
 
 def parse_arguments():
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--list", required=True, type=pathlib.Path)
-    parser.add_argument("--divide", default="20", help="divisors of the diagonal, separated by commas")
-    parser.add_argument("--curvature", type=float, default=12)
-    parser.add_argument("--jobs", type=int, default=1, help="more than one spoils the times")
-    parser.add_argument("--time-limit", type=float, default=120)
-    parser.add_argument("--memory-limit", type=float, default=4, help="GiB of address space")
-    parser.add_argument("--curvetet", required=True, type=pathlib.Path)
-    parser.add_argument("--judge", required=True, type=pathlib.Path)
-    parser.add_argument("--out", required=True, type=pathlib.Path)
+    parser = common_parser(__doc__)
     parser.add_argument("--page", type=pathlib.Path, help="page whose table, between <!-- table: begin --> and "
                         "<!-- table: end -->, is replaced")
-    return parser.parse_args()
+    parser.set_defaults(divide="20", jobs=1, time_limit=120)  # more than one job spoils the times
+    arguments = parser.parse_args()
+    if arguments.judge is None:
+        parser.error("without a judge nothing is valid")
+    return arguments
 
 
 def main():
     arguments = parse_arguments()
     arguments.out.mkdir(parents=True, exist_ok=True)
-    bodies = [line.strip() for line in arguments.list.read_text().splitlines() if line.strip() and line[0] != "#"]
-    divisors = [float(d) for d in arguments.divide.split(",")]
+    bodies, divisors = read_list(arguments.list), read_divisors(arguments.divide)
     there = [(name, command) for name, command, installed in programs(arguments) if installed]
     missing = [name for name, _, installed in programs(arguments) if not installed]
     comparison = Comparison(arguments)

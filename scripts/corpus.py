@@ -26,8 +26,9 @@ import time
 EXIT_WORDS = {2: "bad options", 3: "input refused", 4: "time or budget", 5: "no valid mesh", 70: "internal error"}
 
 
-def parse_arguments():
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+def common_parser(words):
+    """Bodies, sizes, limits and programs: what every comparison over a list takes."""
+    parser = argparse.ArgumentParser(description=words, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--list", required=True, type=pathlib.Path, help="text file, a path per line, # for comments")
     parser.add_argument("--root", type=pathlib.Path, help="folder the paths are relative to; default: the list's")
     parser.add_argument("--divide", default="10,20", help="divisors of the diagonal, separated by commas")
@@ -36,14 +37,34 @@ def parse_arguments():
     parser.add_argument("--time-limit", type=float, default=60, help="seconds for each run of each program")
     parser.add_argument("--memory-limit", type=float, default=4, help="GiB of address space for each run; 0: none")
     parser.add_argument("--curvetet", required=True, type=pathlib.Path)
+    parser.add_argument("--judge", type=pathlib.Path)
+    parser.add_argument("--out", required=True, type=pathlib.Path)
+    return parser
+
+
+def read_list(path):
+    lines = [line.strip() for line in path.read_text().splitlines()]
+    return [line for line in lines if line and not line.startswith("#")]
+
+
+def read_divisors(text):
+    return [float(divisor) for divisor in text.split(",")]
+
+
+def gmsh_command(body, size, mesh, curvature, algorithm=1):
+    """gmsh by its defaults but for the size, the elements per turn, and the algorithm: 1 Delaunay, 10 HXT."""
+    return ["gmsh", "-3", body, "-o", mesh, "-format", "msh41", "-nt", "1", "-setnumber", "Mesh.MeshSizeMax", size,
+            "-setnumber", "Mesh.MeshSizeFromCurvature", curvature, "-setnumber", "Mesh.Algorithm3D", algorithm]
+
+
+def parse_arguments():
+    parser = common_parser(__doc__)
     parser.add_argument("--options", default="", help="further options of `curvetet mesh`, separated by spaces")
     parser.add_argument("--cad-options", default="", help="options of all commands that read the CAD file, as "
                         "'--overlaps split'")
     parser.add_argument("--apart", action="store_true", help="bodies that fail, as those whose solids overlap, are "
                         "meshed again with --conformal off, and checked and judged in parts; they are counted")
-    parser.add_argument("--judge", type=pathlib.Path)
     parser.add_argument("--gmsh", action="store_true", help="mesh with gmsh at the same size, too, for comparison")
-    parser.add_argument("--out", required=True, type=pathlib.Path)
     parser.add_argument("--keep", action="store_true", help="keep the meshes of valid runs")
     return parser.parse_args()
 
@@ -219,8 +240,7 @@ class Corpus:
         """The same body and size with gmsh, by its defaults and the same elements per turn."""
         mesh = self.a.out / f"{name}.gmsh.msh"
         mesh.unlink(missing_ok=True)
-        command = ["gmsh", "-3", self.root / body, "-o", mesh, "-format", "msh41", "-nt", "1", "-setnumber",
-                   "Mesh.MeshSizeMax", size, "-setnumber", "Mesh.MeshSizeFromCurvature", self.a.curvature]
+        command = gmsh_command(self.root / body, size, mesh, self.a.curvature)
         code, _, _, seconds = run(command, self.a.time_limit, self.a.memory_limit)
         gmsh = {"exit": code, "seconds": seconds, "valid": False}
         if code == 0 and mesh.is_file():
@@ -312,7 +332,7 @@ def summarize(rows, judged):
         print(f"  /{divisor:g}: {sum(row['status'] == 'valid' for row in here)} of {len(here)}")
     apart = [row for row in rows if row.get("apart")]
     if apart:
-        print(f"of these meshed apart, as their solids cannot be joined: {len(apart)}, "
+        print(f"of these failed as a whole and were tried in parts: {len(apart)}, "
               f"valid {sum(row['status'] == 'valid' for row in apart)}")
     causes = collections.Counter(cause_key(row) for row in rows if row["status"] != "valid")
     for cause, count in causes.most_common():
@@ -338,11 +358,9 @@ def main():
     for number_of_signal in (signal.SIGINT, signal.SIGTERM):
         signal.signal(number_of_signal, end_all)
     arguments.out.mkdir(parents=True, exist_ok=True)
-    bodies = [line.strip() for line in arguments.list.read_text().splitlines()]
-    bodies = [line for line in bodies if line and not line.startswith("#")]
-    divisors = [float(d) for d in arguments.divide.split(",")]
     corpus = Corpus(arguments)
-    planned = [corpus.row(body, divisor) for body in bodies for divisor in divisors]
+    planned = [corpus.row(body, divisor) for body in read_list(arguments.list)
+               for divisor in read_divisors(arguments.divide)]
     corpus.mesh_all(planned)
     rows = []
     with open(arguments.out / "results.jsonl", "w") as results, \

@@ -27,7 +27,7 @@ constexpr double kLongEdge = 1.4;          ///< an edge over size that is split 
 constexpr double kEncroachHeight = 0.45;   ///< distance over size within which a diametral sphere counts
 constexpr std::size_t kLargestCavity = 64;
 constexpr int kLastRounds = 4;
-constexpr double kWraps = 1.1;  ///< an arc over its chord that goes around something
+constexpr double kWraps = 1.1;  ///< an arc over its chord, just below that of a quarter turn
 
 enum class Need : std::uint8_t { none, shape, fold, size, bend };
 

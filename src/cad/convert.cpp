@@ -27,7 +27,7 @@
 #include "cad/loops.h"
 #include "cad/occt_geometry.h"
 #include "geometry/bounds.h"
-#include "geometry/loose_ends.h"
+#include "geometry/settle_vertices.h"
 #include "geometry/touching_edges.h"
 
 namespace curvetet {
@@ -84,7 +84,7 @@ class Converter {
       if (box.diagonal() > 0) make_parts(Frame::of(box));
     }
     if (const auto error = make_solids()) return *error;
-    mend_loose_ends(model_, next_edge_label_, next_vertex_label_);
+    settle_vertices(model_);
     list_faces_of_edges();
     part_touching_edges(model_);
     return std::move(model_);

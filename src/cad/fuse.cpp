@@ -15,7 +15,6 @@
 #include <TopExp_Explorer.hxx>
 #include <TopoDS_Compound.hxx>
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <deque>
 #include <gp_Pnt.hxx>
@@ -24,15 +23,15 @@
 #include "cad/history.h"
 #include "cad/occt_geometry.h"
 #include "cad/overlap.h"
-#include "cad/sew.h"
 
 namespace curvetet {
 namespace {
 
 /// Solids that are fused at once.
 constexpr std::size_t kGroup = 20;
-/// Over the body's diagonal: what is tried in turn where solids overlap by less than their tolerances explain.
-constexpr std::array<double, 4> kTolerances{0, 1e-6, 1e-5, 1e-4};
+/// A second fuse takes for coincident what is closer than this many times the mean thickness of what solids have in
+/// common.
+constexpr double kHairs = 4;
 constexpr double kVolume = 1e-4;  ///< relative change of a solid's volume that fusing may make
 
 struct FaceBox {
@@ -72,16 +71,16 @@ class Fuse {
     }
     if (overlaps == Overlaps::refuse) {
       if (const auto overlap = common_cell()) return overlap_error(body_, *overlap, source);
-      if (const int split = split_solid(); split != 0) {
-        overlaps_by_a_hair_ = true;
+      if (const int split = split_solid(); split != 0)
         return fail("solids that touch are not fused: " + name_of(split) + " overlaps another one, by a hair");
-      }
     }
     replace();
     return Fusing::imprinted;
   }
 
-  bool overlaps_by_a_hair() const { return overlaps_by_a_hair_; }
+  /// Mean thickness of the thickest cell that is of two solids, of those that only tolerances explain; 0 if there is
+  /// none.
+  double hair() const { return hair_; }
 
  private:
   Fusing fail(const std::string& why) {
@@ -186,7 +185,10 @@ class Fuse {
   /// The kernel takes what lies in a void for common if the void's shell is turned the wrong way.
   std::optional<Overlap> overlap_of(int one, int two, const TopoDS_Shape& cell) {
     const double volume = std::abs(volume_of(cell));
-    if (thickness(cell, volume) <= overlap_depth(body_)) return std::nullopt;
+    if (const double hair = thickness(cell, volume); hair <= overlap_depth(body_)) {
+      hair_ = std::max(hair_, hair);
+      return std::nullopt;
+    }
     GProp_GProps middle;
     BRepGProp::VolumeProperties(cell, middle);
     const Vec3 place = to_vec(middle.CentreOfMass().XYZ());
@@ -263,7 +265,7 @@ class Fuse {
   }
 
   CadBody& body_;
-  bool overlaps_by_a_hair_ = false;
+  double hair_ = 0;
   double tolerance_;  ///< what is closer than that coincides, besides the tolerances of the parts
   TopTools_IndexedMapOfShape solids_;
   std::deque<BOPAlgo_Builder> builders_;
@@ -277,19 +279,18 @@ Result<Fusing> fuse_touching(CadBody& body, Overlaps overlaps, const std::string
   if (solids.Extent() < 2) return Fusing::apart;
   // A solid may lie in another one without a face near a face.
   if (overlaps == Overlaps::refuse && !may_touch(solids)) return Fusing::apart;
-  const double diagonal = diagonal_of(body.shape);
-  for (std::size_t i = 0;; ++i) {
-    CadBody fused = body;
-    const double tolerance = kTolerances[i] * diagonal;
-    Fuse fuse(fused, tolerance);
-    Result<Fusing> done = fuse.run(overlaps, source);
-    if (fuse.overlaps_by_a_hair() && i + 1 < kTolerances.size()) continue;
-    body = std::move(fused);
-    if (i > 0 && done && done.value() == Fusing::imprinted)
-      body.notes.push_back(
-          {"file", fmt::format("solids overlap by a hair; joined where closer than {:.3g}", tolerance)});
-    return done;
+  CadBody exact = body;
+  Fuse first(exact, 0);
+  Result<Fusing> outcome = first.run(overlaps, source);
+  if (!outcome || outcome.value() != Fusing::failed || first.hair() == 0) {
+    body = std::move(exact);
+    return outcome;
   }
+  const double tolerance = std::min(kHairs * first.hair(), overlap_depth(body));
+  Result<Fusing> joined = Fuse(body, tolerance).run(overlaps, source);
+  if (joined && joined.value() == Fusing::imprinted)
+    body.notes.push_back({"file", fmt::format("solids overlap by a hair; joined where closer than {:.3g}", tolerance)});
+  return joined;
 }
 
 }  // namespace curvetet

@@ -9,6 +9,7 @@
 #include <ShapeFix_Shape.hxx>
 
 #include "cad/cells.h"
+#include "cad/confirm_crossing.h"
 #include "cad/convert.h"
 #include "cad/fuse.h"
 #include "cad/guard.h"
@@ -167,7 +168,8 @@ Error fault_error(const Attempt& result, const std::string& source) {
 
 }  // namespace
 
-Result<Model> heal_and_convert(CadBody& body, const std::string& source, const Joining& joining) {
+Result<Model> heal_and_convert(CadBody& body, const std::string& source, const Joining& joining,
+                               const std::vector<std::uint32_t>& suspects) {
   const QuietMessages quiet;
   return guarded(ErrorCode::reader_failed, "cannot repair the shape in " + source, [&]() -> Result<Model> {
     if (const auto error = close_solids(body, source)) return *error;
@@ -185,6 +187,9 @@ Result<Model> heal_and_convert(CadBody& body, const std::string& source, const J
       if (const Status joined = join(best, source, joining); !joined) return joined.error();
     }
     body = std::move(best.body);
+    if (!suspects.empty()) {
+      if (const auto crossing = confirm_crossing(body, suspects, source)) return *crossing;
+    }
     for (const ModelFault& fault : best.faults) {
       const HealingNote note{fault.entity, fault.what + " (left as it is)"};
       body.notes.push_back(note);

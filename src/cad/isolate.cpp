@@ -22,7 +22,6 @@
 #include <vector>
 
 #include "base/child_program.h"
-#include "cad/confirm_crossing.h"
 #include "cad/guard.h"
 #include "cad/heal.h"
 #include "cad/read.h"
@@ -192,11 +191,7 @@ int run_cad_helper(int argc, char** argv) {
   if (!announce_transfer(out_path)) return kUnwritable;
   Result<CadBody> body = read_body(path, unit);
   if (!body) return write_transfer(body.error(), out_path) ? 0 : kUnwritable;
-  const Result<Model> model = heal_and_convert(body.value(), path, joining_of(argv[7]));
-  if (const std::vector<std::uint32_t> suspects = ids_of(argv[8]); model && !suspects.empty()) {
-    if (const auto crossing = confirm_crossing(body.value(), suspects, path))
-      return write_transfer(*crossing, out_path) ? 0 : kUnwritable;
-  }
+  const Result<Model> model = heal_and_convert(body.value(), path, joining_of(argv[7]), ids_of(argv[8]));
   const bool written = model ? write_transfer(body.value(), out_path) : write_transfer(model.error(), out_path);
   return written ? 0 : kUnwritable;
 }

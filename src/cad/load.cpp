@@ -2,7 +2,6 @@
 // shape that was converted once already, and is converted again here.
 #include "cad/load.h"
 
-#include "cad/confirm_crossing.h"
 #include "cad/convert.h"
 #include "cad/heal.h"
 #include "cad/isolate.h"
@@ -24,11 +23,7 @@ Result<Model> load_model(const std::string& path, const LoadOptions& options, Co
   Result<CadBody> body = read_body(path, options.input_unit);
   if (!body) return body.error();
   if (context.should_stop()) return context.stop_error("load");
-  Result<Model> model = heal_and_convert(body.value(), path, options.joining);
-  if (model && !options.suspects.empty()) {
-    if (auto crossing = confirm_crossing(body.value(), options.suspects, path)) return *crossing;
-  }
-  return model;
+  return heal_and_convert(body.value(), path, options.joining, options.suspects);
 }
 
 }  // namespace curvetet

@@ -7,7 +7,6 @@
 #include <sstream>
 
 #include "cad/body.h"
-#include "cad/confirm_crossing.h"
 #include "cad/guard.h"
 #include "cad/heal.h"
 
@@ -57,11 +56,7 @@ Result<Model> model_from_shape(const TopoDS_Shape& shape, const ShapeOptions& op
   label_all(body);
   for (const PartLabel& label : options.labels.parts)
     if (const Status labelled = label_part(body, shape, label, name); !labelled) return labelled.error();
-  Result<Model> model = heal_and_convert(body, name, options.joining);
-  if (model && !options.suspects.empty()) {
-    if (auto crossing = confirm_crossing(body, options.suspects, name)) return *crossing;
-  }
-  return model;
+  return heal_and_convert(body, name, options.joining, options.suspects);
 }
 
 }  // namespace curvetet

@@ -9,15 +9,13 @@ namespace curvetet {
 
 namespace {
 
-constexpr std::uint32_t kUnused = 0xFFFFFFFF;
-
 class Assembly {
  public:
   Assembly(const Conjoint& conjoint, const Settings& settings)
       : conjoint_(conjoint),
         model_(conjoint.model()),
         settings_(settings),
-        number_(conjoint.vertices().size(), kUnused) {}
+        number_(conjoint.vertices().size(), kNoNode) {}
 
   Mesh run() {
     mesh_.unit = settings_.unit;
@@ -37,7 +35,7 @@ class Assembly {
         for (VertexId v : complex.vertices(TetId(t))) number_[v.value()] = 0;
     std::uint32_t next = 0;
     for (std::size_t v = 0; v < number_.size(); ++v) {
-      if (number_[v] == kUnused) continue;
+      if (number_[v] == kNoNode) continue;
       number_[v] = next++;
       add_point(VertexId(v));
     }
@@ -78,11 +76,11 @@ class Assembly {
 
   void add_segments() {
     for (const Conjoint::Segment& s : conjoint_.segments()) {
-      if (number(s.a) == kUnused || number(s.b) == kUnused) continue;
+      if (number(s.a) == kNoNode || number(s.b) == kNoNode) continue;
       mesh_.segments.push_back({number(s.a), number(s.b)});
       mesh_.segment_edge.push_back(s.edge.value());
     }
-    for (VertexId v : conjoint_.boundary().cad_vertices) mesh_.corner_nodes.push_back(v.valid() ? number(v) : kUnused);
+    for (VertexId v : conjoint_.boundary().cad_vertices) mesh_.corner_nodes.push_back(v.valid() ? number(v) : kNoNode);
   }
 
   /// What bounds what, as this mesh has it.
@@ -115,7 +113,7 @@ class Assembly {
     for (std::size_t i = 0; i < mesh_.segments.size(); ++i)
       for (std::uint32_t p : mesh_.segments[i]) extend(edges[mesh_.segment_edge[i]], p);
     for (std::size_t i = 0; i < mesh_.corner_nodes.size(); ++i)
-      if (mesh_.corner_nodes[i] != kUnused) extend(vertices[i], mesh_.corner_nodes[i]);
+      if (mesh_.corner_nodes[i] != kNoNode) extend(vertices[i], mesh_.corner_nodes[i]);
     set_boxes(mesh_.solids, solids);
     set_boxes(mesh_.faces, faces);
     set_boxes(mesh_.edges, edges);

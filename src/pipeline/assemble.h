@@ -7,6 +7,9 @@
 
 namespace curvetet {
 
+/// In Mesh::corner_nodes, of a CAD vertex that no mesh vertex lies at.
+inline constexpr std::uint32_t kNoNode = 0xFFFFFFFF;
+
 /// Tets with a region, the triangles of every T_Γ, the segments of every curve mesh. Order: by id; so the same bytes
 /// each time.
 Mesh assemble(const Conjoint& conjoint, const Settings& settings);

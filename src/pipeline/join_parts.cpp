@@ -8,8 +8,6 @@ namespace curvetet {
 
 namespace {
 
-constexpr std::uint32_t kUnused = 0xFFFFFFFF;
-
 template <class Key>
 std::map<std::uint32_t, double> local_sizes(const std::map<std::uint32_t, double>& whole,
                                             const IndexedVector<Key, Key>& of_whole) {
@@ -52,7 +50,7 @@ std::uint32_t entity_of_whole(const NodeOnCad& node, const Part& part) {
     case 2:
       return part.faces[FaceId(node.entity)].value();
     default:
-      return node.entity < part.solids.size() ? part.solids[SolidId(node.entity)].value() : node.entity;
+      return part.solids[SolidId(node.entity)].value();
   }
 }
 
@@ -78,7 +76,7 @@ Mesh empty_mesh(const Model& whole, const Settings& settings) {
   Mesh mesh;
   mesh.unit = settings.unit;
   add_labels(mesh, whole);
-  mesh.corner_nodes.assign(mesh.vertices.size(), kUnused);
+  mesh.corner_nodes.assign(mesh.vertices.size(), kNoNode);
   return mesh;
 }
 
@@ -94,30 +92,12 @@ void append(Mesh& mesh, const Mesh& of_part, const Part& part) {
   take_elements(mesh.segments, mesh.segment_edge, of_part.segments, of_part.segment_edge, part.edges, offset);
   for (std::size_t v = 0; v < of_part.corner_nodes.size(); ++v) {
     std::uint32_t& corner = mesh.corner_nodes[part.vertices[CadVertexId(v)].value()];
-    if (corner == kUnused && of_part.corner_nodes[v] != kUnused) corner = of_part.corner_nodes[v] + offset;
+    if (corner == kNoNode && of_part.corner_nodes[v] != kNoNode) corner = of_part.corner_nodes[v] + offset;
   }
   take_entities(mesh.solids, of_part.solids, part.solids);
   take_entities(mesh.faces, of_part.faces, part.faces);
   take_entities(mesh.edges, of_part.edges, part.edges);
   take_entities(mesh.vertices, of_part.vertices, part.vertices);
-}
-
-void add(RecoveryCounts& sum, const RecoveryCounts& more) {
-  sum.crossings += more.crossings;
-  sum.edge_flips += more.edge_flips;
-  sum.edge_splits += more.edge_splits;
-  sum.edges_filled += more.edges_filled;
-  sum.volume_points += more.volume_points;
-  sum.rounds = std::max(sum.rounds, more.rounds);
-  sum.stage_one_points += more.stage_one_points;
-  sum.stage_one_allowed += more.stage_one_allowed;
-  sum.stage_two_points += more.stage_two_points;
-  sum.case1 += more.case1;
-  sum.case2 += more.case2;
-  sum.case3a += more.case3a;
-  sum.case3b += more.case3b;
-  sum.case4 += more.case4;
-  sum.fallback_faces += more.fallback_faces;
 }
 
 void sort_entities(Report& report, const Mesh& mesh) {

@@ -17,8 +17,6 @@ Mesh empty_mesh(const Model& whole, const Settings& settings);
 /// one's node.
 void append(Mesh& mesh, const Mesh& of_part, const Part& part);
 
-/// Counts of recovery add up.
-void add(RecoveryCounts& sum, const RecoveryCounts& more);
 /// Puts faces and solids of the report into the order of the mesh's entities.
 void sort_entities(Report& report, const Mesh& mesh);
 

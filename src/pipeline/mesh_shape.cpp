@@ -18,12 +18,9 @@ Result<MeshOutput> mesh(const TopoDS_Shape& shape, const ShapeLabels& labels, co
   if (!options.input_unit.empty()) load.unit = options.input_unit;
   load.labels = labels;
   load.joining = {options.conformal, options.overlaps};
-  source.load = [&](Context& while_loading) { return model_from_shape(shape, load, while_loading); };
-  source.confirm_crossing = [&](const std::vector<std::uint32_t>& faces, Context& while_loading) {
-    ShapeOptions again = load;
-    again.suspects = faces;
-    const Result<Model> model = model_from_shape(shape, again, while_loading);
-    return model ? std::optional<Error>() : std::optional(model.error());
+  source.load = [&](const std::vector<std::uint32_t>& suspects, Context& while_loading) {
+    load.suspects = suspects;
+    return model_from_shape(shape, load, while_loading);
   };
   return mesh_source(source, options, context, report_on_failure);
 }

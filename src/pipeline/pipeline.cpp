@@ -72,22 +72,25 @@ class BodyRun {
     report_.rounds = std::max(report_.rounds, body_.rounds);
     if (body_.failures.empty()) return Done{};
     for (const RecoveryFailure& f : body_.failures) report_.errors.push_back(to_error(f, model_, settings_));
-    confirm_first();
+    confirm_crossing();
     return report_.errors.front();
   }
 
   /// The CAD kernel is asked about the first crossing only: it reads the body again for that.
-  void confirm_first() {
-    const RecoveryFailure& failure = body_.failures.front();
-    if (!failure.crossing || failure.proved || !source_.confirm_crossing) return;
+  void confirm_crossing() {
+    const auto failure =
+        std::find_if(body_.failures.begin(), body_.failures.end(), [](const RecoveryFailure& f) { return f.crossing; });
+    if (failure == body_.failures.end() || failure->proved) return;
     std::vector<std::uint32_t> faces;
-    for (const FaceId f : failure.faces) faces.push_back(model_.faces[f].label.cad_id);
-    const std::optional<Error> confirmed = source_.confirm_crossing(faces, context_);
-    if (!confirmed || confirmed->code != ErrorCode::self_intersection) return;
-    Error& error = report_.errors.front();
-    error.code = confirmed->code;
-    error.message += "; " + confirmed->message;
-    error.hint = confirmed->hint;
+    for (const FaceId f : failure->faces) faces.push_back(model_.faces[f].label.cad_id);
+    const Result<Model> again = source_.load(faces, context_);
+    if (again || again.error().code != ErrorCode::self_intersection) return;
+    // What is proved is told first.
+    const auto error = report_.errors.begin() + (failure - body_.failures.begin());
+    error->code = again.error().code;
+    error->message += "; " + again.error().message;
+    error->hint = again.error().hint;
+    std::rotate(report_.errors.begin(), error, error + 1);
   }
 
   Status mesh_volume_stages() {
@@ -151,7 +154,7 @@ class Run {
 
   Status load() {
     clock_.start("load", 0, kLoadDone);
-    auto model = source_.load(context_);
+    auto model = source_.load({}, context_);
     if (!model.ok()) return model.error();
     model_ = std::move(model.value());
     if (source_.hash) report_.input_hash = source_.hash();
@@ -170,8 +173,8 @@ class Run {
       const double share = (kVolumeDone - kLoadDone) / static_cast<double>(parts.size());
       clock_.set_span(kLoadDone + static_cast<double>(i) * share, share);
       const Part part = make_part(model_, parts[i]);
-      Result<Mesh> made =
-          BodyRun(source_, part.model, settings_of(part, settings_), options_, clock_, context_, report_)();
+      const Settings settings = settings_of(part, settings_);
+      Result<Mesh> made = BodyRun(source_, part.model, settings, options_, clock_, context_, report_)();
       if (!made.ok()) return made.error();
       append(mesh, made.value(), part);
     }
@@ -229,12 +232,9 @@ Result<MeshOutput> mesh(const Input& input, const Options& options, Context& con
   load.helper = options.cad_helper;
   load.joining = {options.conformal, options.overlaps};
   if (options.time_limit) load.isolate_time_limit = std::max(load.isolate_time_limit, *options.time_limit);
-  source.load = [&](Context& while_loading) { return load_model(input.path, load, while_loading); };
-  source.confirm_crossing = [&](const std::vector<std::uint32_t>& faces, Context& while_loading) {
-    LoadOptions again = load;
-    again.suspects = faces;
-    const Result<Model> model = load_model(input.path, again, while_loading);
-    return model ? std::optional<Error>() : std::optional(model.error());
+  source.load = [&](const std::vector<std::uint32_t>& suspects, Context& while_loading) {
+    load.suspects = suspects;
+    return load_model(input.path, load, while_loading);
   };
   return mesh_source(source, options, context, report_on_failure);
 }

@@ -3,7 +3,6 @@
 
 #include <cstdint>
 #include <functional>
-#include <optional>
 #include <string>
 #include <vector>
 
@@ -12,12 +11,12 @@
 
 namespace curvetet {
 
-/// What to mesh. `load` is called once, with options that were found sane.
+/// What to mesh.
 struct Source {
   std::string name;  ///< what messages and the report call it
-  std::function<Result<Model>(Context&)> load;
-  /// Whether the CAD kernel, too, says that these faces (cad ids) cross; empty: nobody can tell.
-  std::function<std::optional<Error>(const std::vector<std::uint32_t>&, Context&)> confirm_crossing;
+  /// Called with options that were found sane; again with faces (cad ids) that a mesh lets cross, where it is an error
+  /// (self_intersection) if the CAD kernel confirms it.
+  std::function<Result<Model>(const std::vector<std::uint32_t>& suspects, Context&)> load;
   std::function<std::string()> hash;  ///< of its bytes, asked for once loading went well; empty if it has none
 };
 

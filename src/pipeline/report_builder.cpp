@@ -10,7 +10,6 @@
 
 #include "geometry/check.h"
 #include "pipeline/assemble.h"
-#include "pipeline/join_parts.h"
 
 namespace curvetet {
 
@@ -143,23 +142,22 @@ void report_body(Report& report, const Model& model, const Settings& settings, c
                  const IndexedVector<FaceId, std::vector<FacetKey>>& locked) {
   const BodyMesh& mesh = *body.mesh;
   report.initial_surface_points += mesh.initial_surface_points;
-  RecoveryCounts c;
-  c.crossings = mesh.crossings.first_pairs;
-  c.edge_flips = mesh.recovery.edge_flips;
-  c.edge_splits = mesh.recovery.edge_splits;
-  c.edges_filled = mesh.recovery.edges_filled;
-  c.volume_points = mesh.recovery.volume_points;
-  c.rounds = mesh.recovery.rounds;
-  c.stage_one_points = mesh.crossings.points + mesh.paper.stage_one_points;
-  c.stage_one_allowed = mesh.paper.stage_one_allowed;
-  c.stage_two_points = mesh.recovery.points;
-  c.case1 = mesh.paper.case1;
-  c.case2 = mesh.paper.case2;
-  c.case3a = mesh.paper.case3a;
-  c.case3b = mesh.paper.case3b;
-  c.case4 = mesh.paper.case4;
-  c.fallback_faces = mesh.paper.fallback_faces;
-  add(report.recovery, c);
+  RecoveryCounts& c = report.recovery;
+  c.crossings += mesh.crossings.first_pairs;
+  c.edge_flips += mesh.recovery.edge_flips;
+  c.edge_splits += mesh.recovery.edge_splits;
+  c.edges_filled += mesh.recovery.edges_filled;
+  c.volume_points += mesh.recovery.volume_points;
+  c.rounds = std::max(c.rounds, mesh.recovery.rounds);
+  c.stage_one_points += mesh.crossings.points + mesh.paper.stage_one_points;
+  c.stage_one_allowed += mesh.paper.stage_one_allowed;
+  c.stage_two_points += mesh.recovery.points;
+  c.case1 += mesh.paper.case1;
+  c.case2 += mesh.paper.case2;
+  c.case3a += mesh.paper.case3a;
+  c.case3b += mesh.paper.case3b;
+  c.case4 += mesh.paper.case4;
+  c.fallback_faces += mesh.paper.fallback_faces;
   for (std::size_t f = 0; f < model.faces.size(); ++f)
     report.faces.push_back(face_report(model, mesh, FaceId(f), locked[FaceId(f)]));
   const double scale = settings.unit_scale / model.frame.scale;

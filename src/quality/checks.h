@@ -19,6 +19,9 @@ namespace curvetet::checks {
 /// The region outside of all solids.
 inline constexpr std::uint32_t kOutside = std::numeric_limits<std::uint32_t>::max();
 
+/// Offenders that a finding names.
+inline constexpr std::size_t kExamples = 5;
+
 inline Vec3 vec(const Point& p) { return {p[0], p[1], p[2]}; }
 std::string place(Vec3 p);  ///< "(1, 2, 3)"
 

@@ -21,7 +21,7 @@ FaceInput dipping_triangle() {
   return input;
 }
 
-bool untangled(FaceInput &input, double tolerance) {
+bool untangled(FaceInput& input, double tolerance) {
   FaceMesh mesh;
   const std::vector<LoopFault> faults = mesh.build(input);
   EXPECT_FALSE(faults.empty());
@@ -52,7 +52,8 @@ TEST(Untangle, LeavesWhatTheToleranceDoesNotExplain) {
 /// The upper side comes back below the lower one for several nodes, all of which are on the wrong side.
 TEST(Untangle, StraightensBothSidesUpToTheCrossing) {
   FaceInput input = dipping_triangle();
-  ChainInput &lower = input.loops[0].chains[0], &upper = input.loops[0].chains[2];
+  ChainInput& lower = input.loops[0].chains[0];
+  ChainInput& upper = input.loops[0].chains[2];
   lower.vertices = {VertexId(0U), VertexId(4U), VertexId(5U), VertexId(6U), VertexId(1U)};
   lower.q = {{0, 0}, {0.0625, 0}, {0.125, 0}, {0.25, 0}, {0.5, 0}};
   upper.vertices = {VertexId(2U), VertexId(3U), VertexId(7U), VertexId(8U), VertexId(9U), VertexId(0U)};
@@ -63,7 +64,8 @@ TEST(Untangle, StraightensBothSidesUpToTheCrossing) {
   EXPECT_TRUE(mesh.build(input).empty());
   EXPECT_TRUE(mesh.check().empty());
   for (std::size_t c : {0, 2}) {
-    const ChainInput &now = input.loops[0].chains[c], &was = before.loops[0].chains[c];
+    const ChainInput& now = input.loops[0].chains[c];
+    const ChainInput& was = before.loops[0].chains[c];
     EXPECT_EQ(now.q.front(), was.q.front());
     EXPECT_EQ(now.q.back(), was.q.back());
     EXPECT_EQ(now.vertices, was.vertices);

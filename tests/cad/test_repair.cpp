@@ -9,7 +9,6 @@
 #include <BRepPrimAPI_MakeSphere.hxx>
 #include <BRep_Builder.hxx>
 #include <BRep_Tool.hxx>
-#include <TopExp.hxx>
 #include <TopExp_Explorer.hxx>
 #include <TopoDS.hxx>
 #include <TopoDS_Compound.hxx>
@@ -159,46 +158,22 @@ TEST(Repair, AVertexIsMovedToWhereItsEdgesEnd) {
   const TopoDS_Shape box = BRepPrimAPI_MakeBox(1, 1, 1).Shape();
   const TopoDS_Vertex corner = TopoDS::Vertex(TopExp_Explorer(box, TopAbs_VERTEX).Current());
   const gp_Pnt before = BRep_Tool::Pnt(corner);
-  BRep_Builder().UpdateVertex(corner, before.Translated(gp_Vec(0.1, 0.1, 0.1)), 0.5);
+  BRep_Builder().UpdateVertex(corner, before.Translated(gp_Vec(0.008, 0.008, 0.008)), 0.05);
   const Result<Model> model = convert(box);
   ASSERT_TRUE(model) << model.error().message;
-  EXPECT_TRUE(has_note(model.value(), "is moved by 0.173"));
+  EXPECT_TRUE(has_note(model.value(), "is moved by 0.0139"));
   test::expect_sound(model.value(), "box with a vertex aside");
   EXPECT_EQ(model.value().vertices.size(), 8U);
   EXPECT_EQ(used_edges(model.value()), 12U);
 }
 
-// Beyond its tolerance; the repairs give it a larger one.
-TEST(Repair, AVertexFarFromItsEdgesIsMovedBack) {
+TEST(Repair, NoToleranceExplainsAVertexFarFromItsEdges) {
   const TopoDS_Shape box = BRepPrimAPI_MakeBox(1, 1, 1).Shape();
   const TopoDS_Vertex corner = TopoDS::Vertex(TopExp_Explorer(box, TopAbs_VERTEX).Current());
-  BRep_Builder().UpdateVertex(corner, gp_Pnt(0.3, 0.3, 0.3), 0.01);
+  BRep_Builder().UpdateVertex(corner, gp_Pnt(0.3, 0.3, 0.3), 5);
   const Result<Model> model = convert(box);
-  ASSERT_TRUE(model) << model.error().message;
-  EXPECT_TRUE(has_note(model.value(), "is moved by"));
-  test::expect_sound(model.value(), "box with a vertex inside");
-}
-
-// The two other edges of the corner end at it, so it stays, and a new edge leads from the end to it.
-TEST(Repair, AnEdgeThatEndsBesideItsVertexIsLedThere) {
-  const TopoDS_Shape box = BRepPrimAPI_MakeBox(1, 1, 1).Shape();
-  const TopoDS_Edge edge = TopoDS::Edge(TopExp_Explorer(box, TopAbs_EDGE).Current());
-  Standard_Real low = 0, high = 0;
-  BRep_Tool::Range(edge, low, high);
-  BRep_Builder().Range(edge, low + 0.2 * (high - low), high);
-  BRep_Builder().UpdateVertex(TopExp::FirstVertex(edge), 0.3);
-  const Result<Model> model = convert(box);
-  ASSERT_TRUE(model) << model.error().message;
-  EXPECT_TRUE(has_note(model.value(), "ends 0.2 beside vertex"));
-  test::expect_sound(model.value(), "box with a short edge");
-  EXPECT_EQ(model.value().vertices.size(), 9U);
-  EXPECT_EQ(used_edges(model.value()), 13U);
-  for (const ModelEdge& each : model.value().edges) {
-    if (each.faces.empty()) continue;
-    const Vec3 start = model.value().vertices[each.start].point, end = model.value().vertices[each.end].point;
-    EXPECT_LT(distance(each.curve->value(each.low), start), 1e-9);
-    EXPECT_LT(distance(each.curve->value(each.high), end), 1e-9);
-  }
+  ASSERT_FALSE(model);
+  EXPECT_EQ(model.error().code, ErrorCode::bad_face) << model.error().message;
 }
 
 /// The loose faces of a bent bar whose two ends touch along an edge: unit cubes around one that is left out.

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <functional>
 #include <limits>
+#include <memory>
 #include <numbers>
 
 #include "quality/measures.h"
@@ -583,6 +584,34 @@ TEST(Validate, ChordsWithinTheToleranceOfTheirEdgeAreFair) {
   EXPECT_NE(find(check(s, true), "unfair_chord"), nullptr);
   for (ModelEdge& edge : s.model.edges) edge.tolerance = s.model.frame.length_to_working(3.5);
   EXPECT_EQ(find(check(s, true), "unfair_chord"), nullptr);
+}
+
+/// A parameter curve that lies beside its edge by so much in u.
+class Beside final : public ParameterCurve {
+ public:
+  Beside(std::shared_ptr<const ParameterCurve> base, double by) : base_(std::move(base)), by_(by) {}
+  Vec2 value(double t) const override { return base_->value(t) + Vec2{by_, 0}; }
+  std::unique_ptr<ParameterCurve> clone() const override { return std::make_unique<Beside>(base_, by_); }
+
+ private:
+  std::shared_ptr<const ParameterCurve> base_;
+  double by_;
+};
+
+// The volume of a kernel whose faces do not reach their edges is wrong by what passes through the gaps, and no more.
+TEST(Validate, VolumesAreExplainedByGapsAsFarAsTheyReach) {
+  for (const double gap : {0.0, 0.01}) {
+    for (const double factor : {1.02, 2.0}) {
+      Sample sample = box();
+      sample.model.solids[SolidId(0U)].volume *= factor;
+      const double by = sample.model.frame.length_to_working(gap);
+      for (ModelFace& face : sample.model.faces)
+        for (Loop& loop : face.loops)
+          for (EdgeUse& use : loop.uses) use.curve = std::make_shared<Beside>(use.curve, by);
+      const bool found = find(check(sample, true), "volume") != nullptr;
+      EXPECT_EQ(found, gap == 0 || factor == 2) << gap << " " << factor;
+    }
+  }
 }
 
 }  // namespace
