@@ -4,10 +4,10 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "base/units.h"
 #include "cad/load.h"
 #include "commands.h"
 #include "own_program.h"
-#include "pipeline/settings.h"
 #include "quality/validate.h"
 #include "quality/validate_parts.h"
 #include "terminal.h"

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "base/units.h"
+
 namespace curvetet {
 
 namespace {
@@ -50,16 +52,6 @@ bool resolve_local(const LocalSize& local, double size, const Model& model, Sizi
 }
 
 }  // namespace
-
-std::optional<double> millimetres(const std::string& unit) {
-  if (unit == "mm") return 1.0;
-  if (unit == "cm") return 10.0;
-  if (unit == "m") return 1000.0;
-  if (unit == "inch" || unit == "in") return 25.4;
-  if (unit == "ft") return 304.8;
-  if (unit == "um") return 1e-3;
-  return std::nullopt;
-}
 
 Status check_options(const Options& o) {
   if (o.size && !positive(*o.size)) return bad(fmt::format("size must be a positive length, not {}", *o.size));
