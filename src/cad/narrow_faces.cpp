@@ -68,6 +68,15 @@ NarrowFace measure(const TopoDS_Shape& face, double length) {
   return narrow;
 }
 
+/// By number in the map of faces: is it one of a solid?
+std::vector<char> faces_of_solids(const CadBody& body, const TopTools_IndexedMapOfShape& faces) {
+  std::vector<char> of_solid(static_cast<std::size_t>(faces.Extent()) + 1, 0);
+  for (TopExp_Explorer solid(body.shape, TopAbs_SOLID); solid.More(); solid.Next())
+    for (TopExp_Explorer face(solid.Current(), TopAbs_FACE); face.More(); face.Next())
+      of_solid[static_cast<std::size_t>(faces.FindIndex(face.Current()))] = 1;
+  return of_solid;
+}
+
 class Sets {
  public:
   explicit Sets(std::size_t count) : parent_(count) { std::iota(parent_.begin(), parent_.end(), std::size_t{0}); }
@@ -86,37 +95,39 @@ class Sets {
   std::vector<std::size_t> parent_;
 };
 
+/// Which of the faces hang together by edges.
+Sets connected(const std::vector<TopoDS_Shape>& faces) {
+  Sets sets(faces.size());
+  TopTools_IndexedMapOfShape edges;
+  std::vector<std::size_t> first_at;  // face at each edge
+  for (std::size_t f = 0; f < faces.size(); ++f) {
+    for (TopExp_Explorer edge(faces[f], TopAbs_EDGE); edge.More(); edge.Next()) {
+      const auto number = static_cast<std::size_t>(edges.Add(edge.Current())) - 1;
+      if (number == first_at.size()) first_at.push_back(f);
+      sets.join(first_at[number], f);
+    }
+  }
+  return sets;
+}
+
 }  // namespace
 
 std::vector<std::vector<NarrowFace>> narrow_faces(const CadBody& body, double length) {
-  constexpr std::size_t kNone = static_cast<std::size_t>(-1);
   const TopTools_IndexedMapOfShape faces = sub_shapes(body.shape, TopAbs_FACE);
-  const TopTools_IndexedMapOfShape edges = sub_shapes(body.shape, TopAbs_EDGE);
-  std::vector<char> in_solid(static_cast<std::size_t>(faces.Extent()) + 1, 0);
-  for (TopExp_Explorer solid(body.shape, TopAbs_SOLID); solid.More(); solid.Next())
-    for (TopExp_Explorer face(solid.Current(), TopAbs_FACE); face.More(); face.Next())
-      in_solid[static_cast<std::size_t>(faces.FindIndex(face.Current()))] = 1;
+  const std::vector<char> of_solid = faces_of_solids(body, faces);
   std::vector<NarrowFace> found;
   std::vector<TopoDS_Shape> shapes;
   for (int f = 1; f <= faces.Extent(); ++f) {
-    if (in_solid[static_cast<std::size_t>(f)] == 0) continue;
+    if (of_solid[static_cast<std::size_t>(f)] == 0) continue;
     NarrowFace narrow = measure(faces(f), length);
     if (!(narrow.width < length)) continue;
     narrow.cad_id = body.faces[static_cast<std::size_t>(f - 1)].cad_id;
     found.push_back(narrow);
     shapes.push_back(faces(f));
   }
-  Sets sets(found.size());
-  std::vector<std::size_t> first_at(static_cast<std::size_t>(edges.Extent()) + 1, kNone);
-  for (std::size_t i = 0; i < shapes.size(); ++i) {
-    for (TopExp_Explorer edge(shapes[i], TopAbs_EDGE); edge.More(); edge.Next()) {
-      std::size_t& first = first_at[static_cast<std::size_t>(edges.FindIndex(edge.Current()))];
-      if (first == kNone) first = i;
-      sets.join(first, i);
-    }
-  }
+  const Sets sets = connected(shapes);
   std::vector<std::vector<NarrowFace>> groups;
-  std::vector<std::size_t> group_of(found.size(), kNone);
+  std::vector<std::size_t> group_of(found.size());
   for (std::size_t i = 0; i < found.size(); ++i) {
     const std::size_t root = sets.root(i);
     if (root == i) {

@@ -1,7 +1,7 @@
 // Faces go by the kernel's defeaturing, which extends their neighbours until they meet: the result is exact. Edges are
-// joined into one of their vertices, whose tolerance then covers the gap, so that the curves around stay as they are;
-// ShapeFix_Wireframe was rejected, since it bends and merges the neighbours of what it drops. Sets of faces are tried
-// as a whole first (a bore with its ground, a rounded rim), then in parts.
+// only chosen here: join_vertices.h makes points of them while the body is converted, so that its wires stay closed and
+// its curves as they are. ShapeFix_Wireframe was rejected, since it bends and merges the neighbours of what it drops.
+// Sets of faces are tried as a whole first (a bore with its ground, a rounded rim), then in parts.
 #include "cad/suppress.h"
 
 #include <fmt/format.h>

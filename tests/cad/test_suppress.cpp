@@ -8,6 +8,7 @@
 #include <BRepFilletAPI_MakeChamfer.hxx>
 #include <BRepPrimAPI_MakeBox.hxx>
 #include <BRepPrimAPI_MakeCylinder.hxx>
+#include <BRepPrimAPI_MakeWedge.hxx>
 #include <BRep_Builder.hxx>
 #include <BRep_Tool.hxx>
 #include <TopExp.hxx>
@@ -296,6 +297,17 @@ TEST(Suppress, WhatCannotGoStaysAsItWasAndIsTold) {
   for (const std::uint32_t id : edges_shorter(body, kLength))
     EXPECT_TRUE(has_note(after, "edge " + std::to_string(id), "left")) << id;
   EXPECT_NEAR(test::total_volume(after), 1 - 0.02 * 0.3, 1e-9);
+}
+
+// Its sides would meet two tenths farther out.
+TEST(Suppress, ABluntTipThatWouldGrowStays) {
+  const TopoDS_Shape body = BRepPrimAPI_MakeWedge(1, 10, 1, 0.02).Shape();
+  const Model before = sound_model(body, 0), after = sound_model(body, kLength);
+  EXPECT_TRUE(after.suppressed.empty());
+  const Ids tip = faces_smaller(body, 0.1);
+  ASSERT_EQ(tip.size(), 1U);
+  EXPECT_TRUE(has_note(after, "face " + std::to_string(*tip.begin()), "more than the length"));
+  EXPECT_EQ(test::total_volume(after), test::total_volume(before));
 }
 
 // One detail that stays must not keep others.
