@@ -23,6 +23,7 @@
 #include <limits>
 #include <set>
 
+#include "cad/body.h"
 #include "cad/shape.h"
 #include "curvetet/occt.h"
 #include "pipeline/pipeline.h"
@@ -220,6 +221,18 @@ TEST(Suppress, NoIdIsGivenTwice) {
     if (!before.contains(id)) made.insert(id);
   EXPECT_EQ(made.size(), 4U);
   EXPECT_GT(*made.begin(), *before.rbegin());
+}
+
+TEST(Suppress, TheIdOfWhatWentIsNotGivenAgain) {
+  CadBody body;
+  body.shape = test::make_box_with_core();
+  label_all(body);
+  const TopTools_IndexedMapOfShape solids = sub_shapes(body.shape, TopAbs_SOLID);
+  const auto itself = [](const TopoDS_Shape& part) { return part; };
+  replace_shape(body, solids(1), itself);
+  replace_shape(body, cube(), itself);
+  ASSERT_EQ(body.solids.size(), 1U);
+  EXPECT_EQ(body.solids.front().cad_id, 3U);
 }
 
 TEST(Suppress, AShortEdgeBecomesAVertex) {
