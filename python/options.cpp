@@ -70,6 +70,7 @@ const std::map<std::string, Setter>& setters() {
                        {{"auto", Conformal::automatic}, {"off", Conformal::off}, {"strict", Conformal::strict}})},
       {"overlaps",
        word<Overlaps>("overlaps", &Options::overlaps, {{"refuse", Overlaps::refuse}, {"split", Overlaps::split}})},
+      {"min_feature", member("min_feature", &Options::min_feature)},
       {"recovery", word<RecoveryMode>("recovery", &Options::recovery,
                                       {{"conjoint", RecoveryMode::conjoint}, {"paper", RecoveryMode::paper}})},
       {"refine_interior", member("refine_interior", &Options::refine_interior)},

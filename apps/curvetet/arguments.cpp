@@ -25,6 +25,7 @@ Examples:
   curvetet mesh bracket.step -o bracket.msh
   curvetet mesh bracket.step -o bracket.msh -o bracket.vtu --size 5 --report bracket.json
   curvetet mesh pump.step -o pump.msh --size 4 --face-size inlet=1 --face-size 12=0.5
+  curvetet mesh bracket.step -o bracket.msh --size 5 --min-feature 0.05
   curvetet info bracket.step
   curvetet check bracket.msh bracket.step
   curvetet picture bracket.msh -o bracket.png --cut x=0.5
@@ -244,6 +245,16 @@ void add_conformal(CLI::App& app, Conformal& conformal) {
       ->type_name("MODE");
 }
 
+void add_min_feature(CLI::App& app, double& length, const std::string& unit) {
+  app.add_option(
+         "--min-feature", length,
+         "edges shorter and faces narrower than this are suppressed where that leaves a sound body, and listed, "
+         "as --min-feature 0.05; at most a tenth of the body's diagonal; in " +
+             unit + "; default: 0, off")
+      ->check(not_empty())
+      ->type_name("LENGTH");
+}
+
 void describe_units_and_limits(CLI::App& app, RawMesh& raw, Options& options) {
   app.add_option("--unit", options.unit, "unit of the output: um, mm, cm, m, inch, ft; default: mm, or --input-unit")
       ->type_name("UNIT")
@@ -286,6 +297,7 @@ CLI::App* describe_mesh(CLI::App& app, RawMesh& raw, MeshCommand& command) {
   mesh->add_flag("--keep-invalid", command.keep_invalid, "write the mesh even if the final check finds it invalid");
   add_conformal(*mesh, command.options.conformal);
   add_overlaps(*mesh, command.options.overlaps);
+  add_min_feature(*mesh, command.options.min_feature, "the unit of the output");
   CLI::Option* quiet = mesh->add_flag("-q,--quiet", command.quiet, "say nothing but errors")->option_text(" ");
   mesh->add_flag("-v,--verbose", command.verbose, "say more")->excludes(quiet)->option_text(" ");
   describe_sizes(*mesh, raw, command.options);
@@ -301,6 +313,7 @@ CLI::App* describe_info(CLI::App& app, InfoCommand& command) {
   info->add_option("--input-unit", command.input_unit, "unit of an input that carries none (BREP)")->type_name("UNIT");
   add_conformal(*info, command.joining.conformal);
   add_overlaps(*info, command.joining.overlaps);
+  add_min_feature(*info, command.min_feature, "mm, or for BREP files in --input-unit");
   info->add_flag("!--no-isolate", command.isolate, "read the CAD file in this process, not in a helper")
       ->option_text(" ");
   return info;
@@ -320,6 +333,7 @@ CLI::App* describe_check(CLI::App& app, CheckCommand& command) {
       ->type_name("UNIT");
   add_conformal(*check, command.joining.conformal);
   add_overlaps(*check, command.joining.overlaps);
+  add_min_feature(*check, command.min_feature, "the unit of the mesh, as when it was made");
   check->add_flag("!--no-isolate", command.isolate, "read the CAD file in this process, not in a helper")
       ->option_text(" ");
   check->add_option("--threads", command.threads, "0: all cores")->type_name("NUMBER")->check(CLI::Range(0, 4096));

@@ -30,6 +30,7 @@ struct MeshCommand {
 struct InfoCommand {
   std::string input, input_unit;
   Joining joining;
+  double min_feature = 0;
   bool json = false, isolate = true;
 };
 
@@ -37,6 +38,7 @@ struct CheckCommand {
   std::string mesh, cad;  ///< cad is empty where the mesh is checked alone
   std::string input_unit;
   Joining joining;
+  double min_feature = 0;
   std::optional<double> unit_scale;
   bool json = false, isolate = true;
   int threads = 0;

@@ -4,10 +4,10 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "base/units.h"
 #include "cad/load.h"
 #include "commands.h"
 #include "own_program.h"
-#include "pipeline/settings.h"
 #include "quality/validate.h"
 #include "quality/validate_parts.h"
 #include "terminal.h"
@@ -89,6 +89,12 @@ double scale_of(const CheckCommand& command, const Mesh& mesh, const Model& mode
   return cad && own ? *cad / *own : 1;
 }
 
+/// It is in the unit of the mesh.
+Length min_feature_of(const CheckCommand& command, const Mesh& mesh) {
+  if (command.unit_scale) return {command.min_feature / *command.unit_scale};
+  return {command.min_feature, millimetres(mesh.unit) ? mesh.unit : ""};
+}
+
 }  // namespace
 
 int run_check(const CheckCommand& command) {
@@ -109,6 +115,7 @@ int run_check(const CheckCommand& command) {
     options.isolate = command.isolate;
     options.helper = own_program();
     options.joining = command.joining;
+    options.min_feature = min_feature_of(command, mesh.value());
     Result<Model> loaded = load_model(command.cad, options, context);
     if (!loaded) return show_error(loaded.error());
     model = std::move(loaded.value());

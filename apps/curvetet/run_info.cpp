@@ -18,6 +18,7 @@ int run_info(const InfoCommand& command) {
   options.isolate = command.isolate;
   options.helper = own_program();
   options.joining = command.joining;
+  options.min_feature.value = command.min_feature;
   const Result<Model> model = load_model(command.input, options, context);
   if (!model) return show_error(model.error());
   const Result<std::string> text = describe_model(model.value(), command.json);

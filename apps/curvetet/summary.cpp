@@ -14,13 +14,16 @@ namespace curvetet::cli {
 namespace {
 
 constexpr std::size_t kMostLines = 8;
+constexpr std::size_t kMostIds = 20;
 
 std::string line(const std::string& what, const std::string& text) { return fmt::format("  {:<15} {}\n", what, text); }
 
 std::string place(const Point& p) { return fmt::format("({:.6g}, {:.6g}, {:.6g})", p[0], p[1], p[2]); }
 
+nlohmann::json options_of(const Report& report) { return nlohmann::json::parse(report.options_json, nullptr, false); }
+
 std::string size_line(const Report& report) {
-  const auto options = nlohmann::json::parse(report.options_json, nullptr, false);
+  const auto options = options_of(report);
   if (!options.is_object() || !options.contains("size") || !options["size"].is_number()) return {};
   const bool by_default = options.value("size_is_default", false);
   return line("size", fmt::format("{:.4g} {}{}", options["size"].get<double>(), report.unit,
@@ -46,6 +49,24 @@ std::string solid_lines(const Report& report) {
 
 std::string ids(const char* one, const char* many, const std::vector<std::uint32_t>& ids) {
   return fmt::format("{} {}", ids.size() == 1 ? one : many, fmt::join(ids, ", "));
+}
+
+/// Which edges and faces were suppressed; nothing if there are none.
+std::string suppressed_line(const Report& report) {
+  if (report.suppressed.empty()) return {};
+  std::string kinds;
+  for (const auto& [kind, many] : {std::pair("edge", "edges"), std::pair("face", "faces")}) {
+    std::vector<std::uint32_t> found;
+    for (const SuppressedReport& detail : report.suppressed)
+      if (detail.kind == kind) found.push_back(detail.cad_id);
+    const std::size_t more = found.size() - std::min(found.size(), kMostIds);
+    found.resize(found.size() - more);
+    if (!found.empty()) kinds += (kinds.empty() ? "" : "; ") + ids(kind, many, found);
+    if (more > 0) kinds += fmt::format(" and {} more", more);
+  }
+  return line("suppressed", fmt::format("{} detail{} below {:.4g} {}: {}", report.suppressed.size(),
+                                        report.suppressed.size() == 1 ? "" : "s",
+                                        options_of(report).value("min_feature", 0.0), report.unit, kinds));
 }
 
 /// Small angles that are the body's own; nothing if there are none.
@@ -101,6 +122,7 @@ std::string summary(const Report& report) {
   std::string text =
       fmt::format("{} ({}{})\n", report.input, report.unit, converted ? ", in the file " + report.file_unit : "");
   text += size_line(report);
+  text += suppressed_line(report);
   text += line("counts", fmt::format("{} points, {} tetrahedra, {} boundary triangles", report.points, report.tets,
                                      report.triangles));
   text += solid_lines(report);

@@ -45,8 +45,11 @@ struct Options {
   std::string input_unit;  ///< of BREP files and shapes in memory, which carry none; default: mm
   Conformal conformal = Conformal::automatic;
   Overlaps overlaps = Overlaps::refuse;  ///< with Conformal::off, solids may overlap, and nothing is split
-  bool isolate_cad = true;               ///< read and heal in a helper process
-  std::string cad_helper;  ///< the curvetet program that helps; default: this one, or one beside it, if so named
+  /// Edges shorter and faces narrower than this are suppressed where that leaves a sound body, and reported; 0: none
+  /// are. At most a tenth of the body's diagonal.
+  double min_feature = 0;
+  bool isolate_cad = true;  ///< read and heal in a helper process
+  std::string cad_helper;   ///< the curvetet program that helps; default: this one, or one beside it, if so named
 
   RecoveryMode recovery = RecoveryMode::conjoint;
   bool refine_interior = true;

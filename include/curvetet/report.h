@@ -38,6 +38,15 @@ struct SolidReport {
   double volume = 0, cad_volume = 0;
 };
 
+/// A detail that was left out of the body before meshing (Options::min_feature).
+struct SuppressedReport {
+  std::string kind;  ///< "edge", whose ends are one vertex now, or "face", whose neighbours meet in its place
+  std::uint32_t cad_id = 0;
+  std::string name;  ///< the CAD's; empty if it has none
+  double size = 0;   ///< length of the edge, width of the face
+  Point where{};
+};
+
 /// Where the size had to be smaller than asked. Reason "shape": the outline and bending of the face needed it.
 struct ReductionReport {
   std::uint32_t face = 0, other = 0;  ///< cad ids; other is 0 where there is none
@@ -74,6 +83,7 @@ struct Report {
   std::string file_unit;  ///< of the lengths in the file; empty if it does not say
   std::string mode;
   std::vector<std::string> healing;
+  std::vector<SuppressedReport> suppressed;  ///< edges before faces, ascending ids
   std::string options_json;
   std::vector<StageTime> stages;
   std::size_t points = 0, tets = 0, triangles = 0, segments = 0;

@@ -45,9 +45,9 @@ class InternalError(RuntimeError):
 
 def mesh(path, *, size=None, size_divisor=10.0, min_size=None, curvature=12.0, chord_height=None, grading=0.5,
          gaps=True, face_sizes=None, edge_sizes=None, solid_sizes=None, size_callback=None, unit="", input_unit="",
-         conformal="auto", overlaps="refuse", recovery="conjoint", refine_interior=True, improve=True, radius_edge=2.0,
-         time_limit=None, memory_limit=0, threads=0, seed=1, isolate_cad=True, cad_helper=None, keep_invalid=False,
-         progress=None, log=None):
+         conformal="auto", overlaps="refuse", min_feature=0.0, recovery="conjoint", refine_interior=True, improve=True,
+         radius_edge=2.0, time_limit=None, memory_limit=0, threads=0, seed=1, isolate_cad=True, cad_helper=None,
+         keep_invalid=False, progress=None, log=None):
     """Meshes a CAD file (STEP, IGES or BREP) and returns a Mesh.
 
     Lengths are in the output's unit: `unit`, by default mm (for BREP files, which carry none, `input_unit`).
@@ -66,6 +66,8 @@ def mesh(path, *, size=None, size_divisor=10.0, min_size=None, curvature=12.0, c
     conformal     solids that touch: "auto" joins them where the CAD kernel can, "strict" raises where it cannot, "off"
                   meshes solids that share no face apart, even if they overlap
     overlaps      "refuse" solids that overlap, or "split" them: what they have in common becomes a solid
+    min_feature   edges shorter and faces narrower than this are suppressed where that leaves a sound body, and listed in
+                  report["suppressed"]; at most a tenth of the body's diagonal; 0: off
     recovery      "conjoint", or "paper" for the published method to the letter
     refine_interior, improve
                   put points inside; improve the elements

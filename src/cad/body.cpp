@@ -4,6 +4,7 @@
 #include <GProp_GProps.hxx>
 #include <TopExp.hxx>
 #include <algorithm>
+#include <set>
 
 namespace curvetet {
 
@@ -38,6 +39,15 @@ TopTools_IndexedMapOfShape sub_shapes(const TopoDS_Shape& shape, TopAbs_ShapeEnu
   return map;
 }
 
+std::vector<char> suppressed_edges(const CadBody& body) {
+  std::set<std::uint32_t> ids;
+  for (const SuppressedDetail& detail : body.suppressed)
+    if (detail.kind == SuppressedDetail::Kind::edge) ids.insert(detail.label.cad_id);
+  std::vector<char> suppressed{0};
+  for (const Label& label : body.edges) suppressed.push_back(ids.contains(label.cad_id) ? 1 : 0);
+  return suppressed;
+}
+
 double volume_of(const TopoDS_Shape& shape) {
   GProp_GProps properties;
   BRepGProp::VolumeProperties(shape, properties, kVolumeError, false, false);
@@ -63,7 +73,7 @@ void replace_shape(CadBody& body, const TopoDS_Shape& shape,
     std::vector<Label> labels(static_cast<std::size_t>(after.Extent()));
     std::vector<std::string> paths(labels.size());
     std::vector<char> taken(labels.size(), 0);
-    std::uint32_t next = 0;
+    std::uint32_t& next = body.last_ids[type];
     for (int i = 1; i <= before.Extent(); ++i) {
       const std::size_t from = static_cast<std::size_t>(i - 1);
       next = std::max(next, old[from].cad_id);

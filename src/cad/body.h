@@ -6,6 +6,7 @@
 #include <TopoDS_Shape.hxx>
 #include <array>
 #include <functional>
+#include <map>
 #include <string>
 #include <vector>
 
@@ -24,10 +25,14 @@ struct CadBody {
   TopoDS_Shape shape;
   std::vector<Label> solids, faces, edges, vertices;
   std::vector<std::string> solid_paths;  ///< assembly path per solid
-  std::vector<char> shared_product;      ///< per solid: its product has other solids too (known while reading only)
+  /// The largest ids so far, those of parts that went included; where there is none, nothing went yet.
+  std::map<TopAbs_ShapeEnum, std::uint32_t> last_ids;
+  std::vector<char> shared_product;  ///< per solid: its product has other solids too (known while reading only)
   std::string unit = "mm";
   std::string file_unit;  ///< what the file says its lengths are in; empty if it does not
   std::vector<HealingNote> notes;
+  /// Edges before faces, ascending ids. The faces are gone; the edges are left to convert_body to take as points.
+  std::vector<SuppressedDetail> suppressed;
   CadMeasures measures;
 };
 
@@ -39,6 +44,9 @@ const std::vector<Label>& labels_of(const CadBody& body, TopAbs_ShapeEnum type);
 /// Distinct sub-shapes of a type in the order of TopExp::MapShapes.
 TopTools_IndexedMapOfShape sub_shapes(const TopoDS_Shape& shape, TopAbs_ShapeEnum type);
 
+/// By number in the map of edges: is it suppressed? The shape has it still.
+std::vector<char> suppressed_edges(const CadBody& body);
+
 /// Signed volume within the faces of a shape, each integrated adaptively.
 double volume_of(const TopoDS_Shape& shape);
 
@@ -47,7 +55,8 @@ void label_all(CadBody& body);
 
 /// Replaces the shape; `image` gives for a part of the old shape what became of it (null: removed; possibly several
 /// parts in a compound). Labels follow their parts; of several parts the first keeps the id. The others keep the name
-/// and colour and get the next free ids, as do parts that come from nowhere.
+/// and colour and get the next free ids, as do parts that come from nowhere; the id of a part that went is not given
+/// again.
 void replace_shape(CadBody& body, const TopoDS_Shape& shape,
                    const std::function<TopoDS_Shape(const TopoDS_Shape&)>& image);
 

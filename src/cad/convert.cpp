@@ -74,7 +74,8 @@ class Converter {
     if (const auto error = find_box()) return *error;
     if (const auto error = collect_shells()) return *error;
     mark_used();
-    joined_ = join_vertices(vertices_, edges_, kLargestJoin * loose_box_.diagonal());
+    suppressed_ = suppressed_edges(body_);
+    joined_ = join_vertices(vertices_, edges_, kLargestJoin * loose_box_.diagonal(), suppressed_);
     note_joined();
     make_parts(Frame::of(loose_box_));
     if (loose_box_.diagonal() > kLooseBox * model_.frame.length_to_cad(model_.box.diagonal())) {
@@ -194,11 +195,13 @@ class Converter {
 
   void make_parts(const Frame& frame) {
     model_ = Model();
-    next_vertex_label_ = next_edge_label_ = 0;
+    next_edge_label_ = body_.last_ids[TopAbs_EDGE];
+    next_vertex_label_ = body_.last_ids[TopAbs_VERTEX];
     model_.frame = frame;
     model_.unit = body_.unit;
     model_.file_unit = body_.file_unit;
     model_.healing = notes_;
+    model_.suppressed = body_.suppressed;
     if (ignored_ > 0) note("file", std::to_string(ignored_) + " faces that belong to no solid are left out");
     make_vertices();
     make_edges();
@@ -262,9 +265,11 @@ class Converter {
     for (int v = 1; v <= vertices_.Extent(); ++v) {
       const int other = joined_.vertex[static_cast<std::size_t>(v)];
       if (other == v || vertex_used_[static_cast<std::size_t>(v)] == 0) continue;
+      const TopoDS_Vertex &one = TopoDS::Vertex(vertices_(v)), &stands_for = TopoDS::Vertex(vertices_(other));
+      const bool explained = BRep_Tool::Pnt(one).Distance(BRep_Tool::Pnt(stands_for)) <= BRep_Tool::Tolerance(one);
       notes_.push_back({entity("vertex", body_.vertices[static_cast<std::size_t>(v - 1)]),
                         "is joined to " + entity("vertex", body_.vertices[static_cast<std::size_t>(other - 1)]) +
-                            ", within its tolerance"});
+                            (explained ? ", within its tolerance" : ", since the edge between them is suppressed")});
     }
   }
 
@@ -282,18 +287,20 @@ class Converter {
 
   void make_edges() {
     edge_id_.assign(edge_used_.size(), EdgeId());
+    for (const Label& label : body_.edges) next_edge_label_ = std::max(next_edge_label_, label.cad_id);
     for (int e = 1; e <= edges_.Extent(); ++e) {
       const std::size_t index = static_cast<std::size_t>(e);
-      next_edge_label_ = std::max(next_edge_label_, body_.edges[index - 1].cad_id);
-      if (edge_used_[index] == 0) continue;
-      edge_id_[index] =
-          add_edge(TopoDS::Edge(edges_(e).Oriented(TopAbs_FORWARD)), body_.edges[index - 1], joined_.point[index] != 0);
+      if (edge_used_[index] != 0) edge_id_[index] = add_edge(e);
     }
   }
 
-  EdgeId add_edge(const TopoDS_Edge& shape, const Label& label, bool point) {
+  EdgeId add_edge(int number) {
+    const TopoDS_Edge shape = TopoDS::Edge(edges_(number).Oriented(TopAbs_FORWARD));
+    const bool suppressed = suppressed_[static_cast<std::size_t>(number)] != 0;
     ModelEdge edge;
-    edge.label = label;
+    edge.label = body_.edges[static_cast<std::size_t>(number - 1)];
+    // What is left of a suppressed edge is a pole like those that are put in: not of the input.
+    if (suppressed) edge.label = {++next_edge_label_, {}, {}};
     edge.tolerance = working(BRep_Tool::Tolerance(shape));
     Standard_Real low = 0, high = 0;
     const Handle(Geom_Curve) curve = BRep_Tool::Curve(shape, low, high);
@@ -307,8 +314,9 @@ class Converter {
     edge.end = vertex_of(end);
     if (!edge.degenerate) edge.curve = make_curve(curve, model_.frame);
     complete_ends(edge);
+    const bool point = joined_.point[static_cast<std::size_t>(number)] != 0;
     if (!edge.degenerate && (point || shrunk_to_point(edge))) {
-      note(entity("edge", label), "is shorter than its tolerance and taken as a point");
+      if (!suppressed) note(entity("edge", edge.label), "is shorter than its tolerance and taken as a point");
       edge.degenerate = true;
       edge.curve = nullptr;
     }
@@ -509,6 +517,7 @@ class Converter {
   std::vector<CadVertexId> vertex_id_;
   std::uint32_t next_vertex_label_ = 0, next_edge_label_ = 0;
   std::size_t ignored_ = 0, shell_count_ = 0;
+  std::vector<char> suppressed_;  ///< by edge
   JoinedVertices joined_;
   Box3 loose_box_;
   Model model_;

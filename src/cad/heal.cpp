@@ -1,8 +1,10 @@
 // Healing is asked for by evidence: the shape is converted and checked as it is, and only where the check finds a fault
 // are OpenCASCADE's repairs run, from the mildest to the strongest, keeping the result with the least faults. Running
 // the repairs on everything was rejected: on sound shapes they change tolerances and merge edges, and they are slow.
-// Last, solids that touch are made to share what they touch in.
+// Then details are suppressed, if asked for; last, solids that touch are made to share what they touch in.
 #include "cad/heal.h"
+
+#include <fmt/format.h>
 
 #include <BRep_Tool.hxx>
 #include <ShapeBuild_ReShape.hxx>
@@ -16,6 +18,7 @@
 #include "cad/occt_geometry.h"
 #include "cad/overlap.h"
 #include "cad/sew.h"
+#include "cad/suppress.h"
 #include "geometry/check.h"
 
 namespace curvetet {
@@ -110,6 +113,46 @@ void fix_shape(CadBody& body) {
   replace_shape(body, fix->Shape(), [&](const TopoDS_Shape& part) { return context->Apply(part); });
 }
 
+// --- details ---
+
+/// Of the body's diagonal: what is larger is no detail.
+constexpr double kLargestFeature = 0.1;
+
+/// In the body's own unit.
+double length_in_unit_of(const CadBody& body, const Length& length) {
+  const std::string& unit = length.unit.empty() ? body.unit : length.unit;
+  return length.value * millimetres(unit).value_or(1) / millimetres(body.unit).value_or(1);
+}
+
+/// Takes the small details out of a body, but none whose loss would leave it more broken.
+Status suppress(Attempt& best, const std::string& source, const Length& min_feature) {
+  const double length = length_in_unit_of(best.body, min_feature);
+  const Model& model = best.model.value();
+  const double diagonal = model.frame.length_to_cad(model.diagonal());
+  if (!(length >= 0 && length <= kLargestFeature * diagonal)) {
+    return Error{
+        ErrorCode::bad_option,
+        fmt::format("min-feature must be from 0 (off) to a tenth of the body's diagonal, {:.6g} {}; it is {:.6g}",
+                    diagonal, best.body.unit, length)};
+  }
+  if (length == 0) return Done{};
+  const auto without_details = [&](const std::function<bool(const CadBody&)>& is_sound) {
+    CadBody body = best.body;
+    suppress_details(body, length, is_sound);
+    return attempt(std::move(body), source);
+  };
+  // The detail may be what is broken. To convert the body after each one takes long; it is done only if one does harm.
+  const std::size_t allowed = std::max(best.bad, kSerious - 1);
+  Attempt next = without_details([](const CadBody&) { return true; });
+  if (next.bad > allowed) {
+    next = without_details([&](const CadBody& body) { return attempt(body, source).bad <= allowed; });
+  }
+  best = std::move(next);
+  return Done{};
+}
+
+// --- solids that touch ---
+
 /// Solids that touch stay apart: a note, or an error if they must not.
 Status leave_apart(Attempt& best, const std::string& source, Conformal conformal, const std::string& why) {
   if (conformal == Conformal::strict) {
@@ -168,8 +211,7 @@ Error fault_error(const Attempt& result, const std::string& source) {
 
 }  // namespace
 
-Result<Model> heal_and_convert(CadBody& body, const std::string& source, const Joining& joining,
-                               const std::vector<std::uint32_t>& suspects) {
+Result<Model> heal_and_convert(CadBody& body, const std::string& source, const HealOptions& options) {
   const QuietMessages quiet;
   return guarded(ErrorCode::reader_failed, "cannot repair the shape in " + source, [&]() -> Result<Model> {
     if (const auto error = close_solids(body, source)) return *error;
@@ -182,13 +224,16 @@ Result<Model> heal_and_convert(CadBody& body, const std::string& source, const J
       if (next.bad < best.bad) best = std::move(next);
     }
     if (!best.model) return best.model.error();
+    if (options.min_feature.value != 0) {
+      if (const Status suppressed = suppress(best, source, options.min_feature); !suppressed) return suppressed.error();
+    }
     if (best.bad >= kSerious) return fault_error(best, source);
-    if (joining.conformal != Conformal::off) {
-      if (const Status joined = join(best, source, joining); !joined) return joined.error();
+    if (options.joining.conformal != Conformal::off) {
+      if (const Status joined = join(best, source, options.joining); !joined) return joined.error();
     }
     body = std::move(best.body);
-    if (!suspects.empty()) {
-      if (const auto crossing = confirm_crossing(body, suspects, source)) return *crossing;
+    if (!options.suspects.empty()) {
+      if (const auto crossing = confirm_crossing(body, options.suspects, source)) return *crossing;
     }
     for (const ModelFault& fault : best.faults) {
       const HealingNote note{fault.entity, fault.what + " (left as it is)"};

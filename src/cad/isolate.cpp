@@ -68,6 +68,13 @@ Joining joining_of(const std::string& word) {
   return joining;
 }
 
+/// A number that comes back as it was.
+std::string exact(double value) {
+  std::ostringstream out;
+  out << std::hexfloat << value;
+  return out.str();
+}
+
 /// A folder of our own that vanishes with its contents.
 class TemporaryFolder {
  public:
@@ -151,11 +158,11 @@ Result<CadBody> read_isolated(const std::string& path, const std::string& helper
   if (folder.path().empty()) return Error{ErrorCode::output_unwritable, "cannot make a temporary folder"};
   const std::string out_path = folder.path() + "/shape.bin";
   const double allowed = options.isolate_time_limit;
-  ChildProgram child(
-      helper,
-      {helper, kHelperFlag, path, out_path, options.input_unit, std::to_string(options.isolate_memory_limit),
-       std::to_string(allowed), word_of(options.joining), list_of(options.suspects)},
-      "/dev/null", {std::string(kHelperVariable) + "=1", end_with_parent_variable()});
+  ChildProgram child(helper,
+                     {helper, kHelperFlag, path, out_path, options.input_unit,
+                      std::to_string(options.isolate_memory_limit), std::to_string(allowed), word_of(options.joining),
+                      list_of(options.suspects), exact(options.min_feature.value), options.min_feature.unit},
+                     "/dev/null", {std::string(kHelperVariable) + "=1", end_with_parent_variable()});
   if (!child.started()) return Error{ErrorCode::bad_option, "cannot start the helper program " + helper};
   const auto start = Clock::now();
   auto pause = std::chrono::milliseconds(1);
@@ -184,14 +191,15 @@ Result<CadBody> read_isolated(const std::string& path, const std::string& helper
 
 int run_cad_helper(int argc, char** argv) {
   constexpr int kUsage = 2, kUnwritable = 3;
-  if (argc != 9 || std::string(argv[1]) != kHelperFlag) return kUsage;
+  if (argc != 11 || std::string(argv[1]) != kHelperFlag) return kUsage;
   const std::string path = argv[2], out_path = argv[3], unit = argv[4];
   end_with_parent();
   limit_this_process(std::strtoull(argv[5], nullptr, 10), std::strtod(argv[6], nullptr));
   if (!announce_transfer(out_path)) return kUnwritable;
   Result<CadBody> body = read_body(path, unit);
   if (!body) return write_transfer(body.error(), out_path) ? 0 : kUnwritable;
-  const Result<Model> model = heal_and_convert(body.value(), path, joining_of(argv[7]), ids_of(argv[8]));
+  const Length min_feature{std::strtod(argv[9], nullptr), argv[10]};
+  const Result<Model> model = heal_and_convert(body.value(), path, {joining_of(argv[7]), min_feature, ids_of(argv[8])});
   const bool written = model ? write_transfer(body.value(), out_path) : write_transfer(model.error(), out_path);
   return written ? 0 : kUnwritable;
 }

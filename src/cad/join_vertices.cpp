@@ -25,7 +25,7 @@ class Joiner {
   Joiner(const TopTools_IndexedMapOfShape& vertices, const TopTools_IndexedMapOfShape& edges, double largest)
       : vertices_(vertices), edges_(edges), largest_(largest) {}
 
-  JoinedVertices run() {
+  JoinedVertices run(const std::vector<char>& asked) {
     const auto count = static_cast<std::size_t>(vertices_.Extent()) + 1;
     joined_.vertex.resize(count);
     std::iota(joined_.vertex.begin(), joined_.vertex.end(), 0);
@@ -36,6 +36,7 @@ class Joiner {
       members_[static_cast<std::size_t>(v)] = {v};
     }
     joined_.point.assign(static_cast<std::size_t>(edges_.Extent()) + 1, 0);
+    join_asked(asked);
     for (int e = 1; e <= edges_.Extent(); ++e) visit(e);
     return std::move(joined_);
   }
@@ -44,18 +45,42 @@ class Joiner {
   const TopoDS_Vertex& vertex(int number) const { return TopoDS::Vertex(vertices_(number)); }
   gp_Pnt place(int number) const { return BRep_Tool::Pnt(vertex(number)); }
 
+  /// Numbers of the vertices at both ends, 0 where there is none.
+  std::pair<int, int> ends_of(int edge) const {
+    TopoDS_Vertex start, end;
+    TopExp::Vertices(TopoDS::Edge(edges_(edge)), start, end);
+    return {start.IsNull() ? 0 : vertices_.FindIndex(start), end.IsNull() ? 0 : vertices_.FindIndex(end)};
+  }
+
+  void join_asked(const std::vector<char>& asked) {
+    if (asked.empty()) return;
+    std::vector<int> uses(members_.size(), 0);
+    for (int e = 1; e <= edges_.Extent(); ++e) {
+      const auto [a, b] = ends_of(e);
+      ++uses[static_cast<std::size_t>(a)];
+      if (b != a) ++uses[static_cast<std::size_t>(b)];
+    }
+    for (int e = 1; e <= edges_.Extent(); ++e) {
+      if (asked[static_cast<std::size_t>(e)] == 0) continue;
+      const auto [a, b] = ends_of(e);
+      if (a == 0 || b == 0) continue;
+      joined_.point[static_cast<std::size_t>(e)] = 1;
+      const std::vector<int> all = members_of(a, b);
+      stand_for(all, *std::max_element(all.begin(), all.end(), [&](int v, int w) {
+                  return uses[static_cast<std::size_t>(v)] < uses[static_cast<std::size_t>(w)];
+                }));
+    }
+  }
+
   void visit(int number) {
     const TopoDS_Edge& edge = TopoDS::Edge(edges_(number));
-    TopoDS_Vertex start, end;
-    TopExp::Vertices(edge, start, end);
-    if (start.IsNull() || end.IsNull()) return;
-    const int a = vertices_.FindIndex(start), b = vertices_.FindIndex(end);
-    if (a == 0 || b == 0) return;
+    const auto [a, b] = ends_of(number);
+    if (a == 0 || b == 0 || joined_.point[static_cast<std::size_t>(number)] != 0) return;
     Standard_Real low = 0, high = 0;
     const Handle(Geom_Curve) curve = BRep_Tool::Curve(edge, low, high);
     const bool degenerate = BRep_Tool::Degenerated(edge) || curve.IsNull();
     if (!degenerate &&
-        (is_meant(*curve, low, high, BRep_Tool::Tolerance(edge)) || !lies_at(*curve, low, high, start, end)))
+        (is_meant(*curve, low, high, BRep_Tool::Tolerance(edge)) || !lies_at(*curve, low, high, vertex(a), vertex(b))))
       return;
     if (join(a, b) && !degenerate) joined_.point[static_cast<std::size_t>(number)] = 1;
   }
@@ -86,26 +111,39 @@ class Joiner {
 
   /// Makes one group of those of a and b, unless that would take a vertex farther than its own tolerance.
   bool join(int a, int b) {
-    const int root_a = joined_.vertex[static_cast<std::size_t>(a)],
-              root_b = joined_.vertex[static_cast<std::size_t>(b)];
-    if (root_a == root_b) return true;
-    std::vector<int> all = members_[static_cast<std::size_t>(root_a)];
-    const std::vector<int>& others = members_[static_cast<std::size_t>(root_b)];
-    all.insert(all.end(), others.begin(), others.end());
-    std::sort(all.begin(), all.end());
+    if (joined_.vertex[static_cast<std::size_t>(a)] == joined_.vertex[static_cast<std::size_t>(b)]) return true;
+    const std::vector<int> all = members_of(a, b);
     const int tightest = *std::min_element(all.begin(), all.end(), [&](int v, int w) {
       return BRep_Tool::Tolerance(vertex(v)) < BRep_Tool::Tolerance(vertex(w));
     });
+    for (const int v : all) {
+      const double away = place(v).Distance(place(tightest));
+      if (!(away <= std::min(BRep_Tool::Tolerance(vertex(v)), largest_))) return false;
+    }
+    stand_for(all, tightest);
+    return true;
+  }
+
+  /// Of the groups of a and b together, ascending.
+  std::vector<int> members_of(int a, int b) const {
+    const int root_a = joined_.vertex[static_cast<std::size_t>(a)],
+              root_b = joined_.vertex[static_cast<std::size_t>(b)];
+    std::vector<int> all = members_[static_cast<std::size_t>(root_a)];
+    if (root_a == root_b) return all;
+    const std::vector<int>& others = members_[static_cast<std::size_t>(root_b)];
+    all.insert(all.end(), others.begin(), others.end());
+    std::sort(all.begin(), all.end());
+    return all;
+  }
+
+  void stand_for(const std::vector<int>& all, int one) {
     double tolerance = 0;
     for (const int v : all) {
-      const double own = BRep_Tool::Tolerance(vertex(v)), away = place(v).Distance(place(tightest));
-      if (!(away <= std::min(own, largest_))) return false;
-      tolerance = std::max(tolerance, own + away);
+      tolerance = std::max(tolerance, BRep_Tool::Tolerance(vertex(v)) + place(v).Distance(place(one)));
+      joined_.vertex[static_cast<std::size_t>(v)] = one;
     }
-    for (const int v : all) joined_.vertex[static_cast<std::size_t>(v)] = tightest;
-    joined_.tolerance[static_cast<std::size_t>(tightest)] = tolerance;
-    members_[static_cast<std::size_t>(tightest)] = std::move(all);
-    return true;
+    joined_.tolerance[static_cast<std::size_t>(one)] = tolerance;
+    members_[static_cast<std::size_t>(one)] = all;
   }
 
   const TopTools_IndexedMapOfShape& vertices_;
@@ -118,8 +156,8 @@ class Joiner {
 }  // namespace
 
 JoinedVertices join_vertices(const TopTools_IndexedMapOfShape& vertices, const TopTools_IndexedMapOfShape& edges,
-                             double largest) {
-  return Joiner(vertices, edges, largest).run();
+                             double largest, const std::vector<char>& asked) {
+  return Joiner(vertices, edges, largest).run(asked);
 }
 
 }  // namespace curvetet

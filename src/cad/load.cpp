@@ -23,7 +23,7 @@ Result<Model> load_model(const std::string& path, const LoadOptions& options, Co
   Result<CadBody> body = read_body(path, options.input_unit);
   if (!body) return body.error();
   if (context.should_stop()) return context.stop_error("load");
-  return heal_and_convert(body.value(), path, options.joining, options.suspects);
+  return heal_and_convert(body.value(), path, {options.joining, options.min_feature, options.suspects});
 }
 
 }  // namespace curvetet

@@ -8,6 +8,7 @@
 
 #include "base/context.h"
 #include "base/error.h"
+#include "base/units.h"
 #include "cad/joining.h"
 #include "geometry/model.h"
 
@@ -16,6 +17,7 @@ namespace curvetet {
 struct LoadOptions {
   std::string input_unit;  ///< for files that carry no unit: "mm", "cm", "m", "inch"; empty: mm
   Joining joining;
+  Length min_feature;   ///< details below are suppressed (see heal.h); 0: none
   bool isolate = true;  ///< read and heal in a helper process, so that a crash or a loop there becomes a message
   double isolate_time_limit = 60;                            ///< seconds
   std::size_t isolate_memory_limit = std::size_t{4} << 30U;  ///< bytes

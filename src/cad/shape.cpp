@@ -56,7 +56,7 @@ Result<Model> model_from_shape(const TopoDS_Shape& shape, const ShapeOptions& op
   label_all(body);
   for (const PartLabel& label : options.labels.parts)
     if (const Status labelled = label_part(body, shape, label, name); !labelled) return labelled.error();
-  return heal_and_convert(body, name, options.joining, options.suspects);
+  return heal_and_convert(body, name, {options.joining, options.min_feature, options.suspects});
 }
 
 }  // namespace curvetet

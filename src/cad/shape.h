@@ -8,6 +8,7 @@
 
 #include "base/context.h"
 #include "base/error.h"
+#include "base/units.h"
 #include "cad/joining.h"
 #include "curvetet/occt.h"
 #include "geometry/model.h"
@@ -18,6 +19,7 @@ struct ShapeOptions {
   std::string unit = "mm";  ///< of the shape's coordinates
   ShapeLabels labels;
   Joining joining;
+  Length min_feature;                     ///< as LoadOptions::min_feature
   std::vector<std::uint32_t> suspects{};  ///< as LoadOptions::suspects
 };
 

@@ -61,6 +61,10 @@ std::string hex(double x) {
 
 double number(const std::string& text) { return std::strtod(text.c_str(), nullptr); }
 
+std::uint32_t read_id(const std::string& text) {
+  return static_cast<std::uint32_t>(std::strtoul(text.c_str(), nullptr, 10));
+}
+
 class Fields {
  public:
   explicit Fields(const std::string& line) {
@@ -97,10 +101,27 @@ void write_label(std::ostream& out, const char* type, const Label& label, const 
 
 Label read_label(const Fields& fields) {
   Label label;
-  label.cad_id = static_cast<std::uint32_t>(std::strtoul(fields.at(1).c_str(), nullptr, 10));
+  label.cad_id = read_id(fields.at(1));
   label.name = fields.at(2);
   if (fields.size() >= 7) label.colour = Colour{number(fields.at(4)), number(fields.at(5)), number(fields.at(6))};
   return label;
+}
+
+void write_suppressed(std::ostream& out, const SuppressedDetail& detail) {
+  out << "suppressed\t" << name(detail.kind) << '\t' << detail.label.cad_id << '\t' << escaped(detail.label.name)
+      << '\t' << hex(detail.size) << '\t' << hex(detail.place.x) << '\t' << hex(detail.place.y) << '\t'
+      << hex(detail.place.z) << '\n';
+}
+
+SuppressedDetail read_suppressed(const Fields& fields) {
+  SuppressedDetail detail;
+  detail.kind =
+      fields.at(1) == name(SuppressedDetail::Kind::face) ? SuppressedDetail::Kind::face : SuppressedDetail::Kind::edge;
+  detail.label.cad_id = read_id(fields.at(2));
+  detail.label.name = fields.at(3);
+  detail.size = number(fields.at(4));
+  detail.place = {number(fields.at(5)), number(fields.at(6)), number(fields.at(7))};
+  return detail;
 }
 
 void read_error(const Fields& fields, Error& error) {
@@ -128,11 +149,13 @@ Parsed parse(std::istream& in) {
     if (kind == "unit") parsed.body.unit = fields.at(1);
     if (kind == "file unit") parsed.body.file_unit = fields.at(1);
     if (kind == "note") parsed.body.notes.push_back({fields.at(1), fields.at(2)});
+    if (kind == "suppressed") parsed.body.suppressed.push_back(read_suppressed(fields));
     if (kind == "area") parsed.body.measures.face_areas.push_back(number(fields.at(1)));
     if (kind == "volume") parsed.body.measures.shell_volumes.push_back(number(fields.at(1)));
     if (kind == "error") read_error(fields, parsed.error.emplace());
     if (kind == "entity" && parsed.error) parsed.error->entities.push_back(fields.at(1));
     for (const TopAbs_ShapeEnum type : kLabelled) {
+      if (kind == "last" && fields.at(1) == type_name(type)) parsed.body.last_ids[type] = read_id(fields.at(2));
       if (kind == type_name(type)) labels_of(parsed.body, type).push_back(read_label(fields));
     }
     if (kind == "solid") parsed.body.solid_paths.push_back(fields.at(3));
@@ -158,6 +181,8 @@ bool write_transfer(const CadBody& body, const std::string& out_path) {
   out << "unit\t" << escaped(body.unit) << "\nfile unit\t" << escaped(body.file_unit) << '\n';
   for (const HealingNote& note : body.notes)
     out << "note\t" << escaped(note.entity) << '\t' << escaped(note.what) << '\n';
+  for (const auto& [type, id] : body.last_ids) out << "last\t" << type_name(type) << '\t' << id << '\n';
+  for (const SuppressedDetail& detail : body.suppressed) write_suppressed(out, detail);
   for (const TopAbs_ShapeEnum type : kLabelled) {
     const auto& labels = labels_of(body, type);
     for (std::size_t i = 0; i < labels.size(); ++i) {

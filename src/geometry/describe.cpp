@@ -86,6 +86,17 @@ std::vector<std::string> edges_json(const Model& model) {
   return edges;
 }
 
+std::vector<std::string> suppressed_json(const Model& model) {
+  std::vector<std::string> details;
+  for (const SuppressedDetail& detail : model.suppressed) {
+    const Vec3& p = detail.place;
+    details.push_back(
+        fmt::format(R"({{"kind": "{}", "id": {}, "name": {}, "size": {:.12g}, "where": [{:.12g}, {:.12g}, {:.12g}]}})",
+                    name(detail.kind), detail.label.cad_id, quoted(detail.label.name), detail.size, p.x, p.y, p.z));
+  }
+  return details;
+}
+
 std::string to_json(const Model& model, const Summary& summary) {
   std::vector<std::string> solids, faces, notes;
   for (std::size_t i = 0; i < model.solids.size(); ++i) {
@@ -116,10 +127,10 @@ std::string to_json(const Model& model, const Summary& summary) {
       "{{\n  \"schema\": 1,\n  \"unit\": {},\n  \"file_unit\": {},\n  \"box\": [{:.12g}, {:.12g}, {:.12g}, {:.12g}, "
       "{:.12g}, {:.12g}],\n"
       "  \"counts\": {{\"solids\": {}, \"faces\": {}, \"edges\": {}, \"vertices\": {}}},\n  \"surfaces\": {{{}}},\n"
-      "  \"solids\": {},\n  \"faces\": {},\n  \"edges\": {},\n  \"healing\": {}\n}}\n",
+      "  \"solids\": {},\n  \"faces\": {},\n  \"edges\": {},\n  \"healing\": {},\n  \"suppressed\": {}\n}}\n",
       quoted(model.unit), model.file_unit.empty() ? "null" : quoted(model.file_unit), a.x, a.y, a.z, b.x, b.y, b.z,
       model.solids.size(), model.faces.size(), model.edges.size(), model.vertices.size(), kinds, list_json(solids),
-      list_json(faces), list_json(edges_json(model)), list_json(notes));
+      list_json(faces), list_json(edges_json(model)), list_json(notes), list_json(suppressed_json(model)));
 }
 
 std::string to_words(const Model& model, const Summary& summary) {
@@ -153,6 +164,12 @@ std::string to_words(const Model& model, const Summary& summary) {
     const ModelEdge& edge = model.edges[EdgeId(i)];
     add(fmt::format("edge {}  {}  {}  on faces {}", edge.label.cad_id, kind_of(edge), model.edge_name(EdgeId(i)),
                     face_ids(model, edge.faces)));
+  }
+  for (const SuppressedDetail& detail : model.suppressed) {
+    const Vec3& p = detail.place;
+    add(fmt::format("suppressed: {} {}{}, {} {:.3g} at ({:.6g}, {:.6g}, {:.6g})", name(detail.kind),
+                    detail.label.cad_id, detail.label.name.empty() ? "" : "  " + detail.label.name,
+                    detail.kind == SuppressedDetail::Kind::edge ? "length" : "width", detail.size, p.x, p.y, p.z));
   }
   for (const HealingNote& note : model.healing) add("note: " + note.entity + ": " + note.what);
   return out;

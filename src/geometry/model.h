@@ -100,6 +100,17 @@ struct HealingNote {
   std::string what;    ///< "sewn", "wire reordered", ...
 };
 
+/// A detail of the input that the body lacks on request. Its size (length of an edge, width of a face) and place are
+/// those of the CAD.
+struct SuppressedDetail {
+  enum class Kind { edge, face } kind = Kind::edge;
+  Label label;
+  double size = 0;
+  Vec3 place;
+};
+
+inline const char* name(SuppressedDetail::Kind kind) { return kind == SuppressedDetail::Kind::edge ? "edge" : "face"; }
+
 /// A body ready to be meshed.
 struct Model {
   Frame frame;
@@ -111,6 +122,7 @@ struct Model {
   IndexedVector<EdgeId, ModelEdge> edges;
   IndexedVector<CadVertexId, ModelVertex> vertices;
   std::vector<HealingNote> healing;
+  std::vector<SuppressedDetail> suppressed;  ///< edges before faces, ascending ids
   double diagonal() const { return box.diagonal(); }
   std::string face_name(FaceId face) const;     ///< the CAD's name, or "face_12"
   std::string edge_name(EdgeId edge) const;     ///< the CAD's name, or "edge_7"

@@ -18,6 +18,7 @@ Result<MeshOutput> mesh(const TopoDS_Shape& shape, const ShapeLabels& labels, co
   if (!options.input_unit.empty()) load.unit = options.input_unit;
   load.labels = labels;
   load.joining = {options.conformal, options.overlaps};
+  load.min_feature = {options.min_feature, options.unit};
   source.load = [&](const std::vector<std::uint32_t>& suspects, Context& while_loading) {
     load.suspects = suspects;
     return model_from_shape(shape, load, while_loading);

@@ -231,6 +231,7 @@ Result<MeshOutput> mesh(const Input& input, const Options& options, Context& con
   load.isolate = options.isolate_cad;
   load.helper = options.cad_helper;
   load.joining = {options.conformal, options.overlaps};
+  load.min_feature = {options.min_feature, options.unit};
   if (options.time_limit) load.isolate_time_limit = std::max(load.isolate_time_limit, *options.time_limit);
   source.load = [&](const std::vector<std::uint32_t>& suspects, Context& while_loading) {
     load.suspects = suspects;

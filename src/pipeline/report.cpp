@@ -48,6 +48,14 @@ Json reduction_json(const ReductionReport& reduction) {
           {"gap", number(reduction.gap)}, {"where", place(reduction.where)}};
 }
 
+Json suppressed_json(const SuppressedReport& detail) {
+  return {{"kind", detail.kind},
+          {"id", detail.cad_id},
+          {"name", detail.name},
+          {"size", number(detail.size)},
+          {"where", place(detail.where)}};
+}
+
 Json face_json(const FaceReport& face) {
   return {{"face", face.cad_id},
           {"name", face.name},
@@ -130,6 +138,7 @@ std::string Report::to_json() const {
   json["valid"] = valid;
   json["input"] = {
       {"file", input}, {"hash", input_hash}, {"unit", unit}, {"file_unit", file_unit}, {"healing", healing}};
+  json["suppressed"] = list(suppressed, suppressed_json);
   json["mode"] = mode;
   json["options"] = options.is_discarded() ? Json() : options;
   json["counts"] = {{"points", points},

@@ -136,6 +136,14 @@ void report_input(Report& report, const Model& model, const Settings& settings, 
   report.mode = options.recovery == RecoveryMode::paper ? "paper" : "conjoint";
   report.options_json = options_json(options, settings, model);
   for (const HealingNote& note : model.healing) report.healing.push_back(note.entity + ": " + note.what);
+  for (const SuppressedDetail& detail : model.suppressed) {
+    const Vec3 p = settings.unit_scale * detail.place;
+    report.suppressed.push_back({name(detail.kind),
+                                 detail.label.cad_id,
+                                 detail.label.name,
+                                 detail.size * settings.unit_scale,
+                                 {p.x, p.y, p.z}});
+  }
 }
 
 void report_body(Report& report, const Model& model, const Settings& settings, const BodyMesherResult& body,

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "base/units.h"
+
 namespace curvetet {
 
 namespace {
@@ -51,16 +53,6 @@ bool resolve_local(const LocalSize& local, double size, const Model& model, Sizi
 
 }  // namespace
 
-std::optional<double> millimetres(const std::string& unit) {
-  if (unit == "mm") return 1.0;
-  if (unit == "cm") return 10.0;
-  if (unit == "m") return 1000.0;
-  if (unit == "inch" || unit == "in") return 25.4;
-  if (unit == "ft") return 304.8;
-  if (unit == "um") return 1e-3;
-  return std::nullopt;
-}
-
 Status check_options(const Options& o) {
   if (o.size && !positive(*o.size)) return bad(fmt::format("size must be a positive length, not {}", *o.size));
   if (!(std::isfinite(o.size_divisor) && o.size_divisor >= 1))
@@ -76,6 +68,8 @@ Status check_options(const Options& o) {
     return bad(fmt::format("grading must be above 0 and at most 10, not {}", o.grading));
   if (!(std::isfinite(o.radius_edge) && o.radius_edge >= 1))
     return bad(fmt::format("radius-edge must be at least 1, not {}", o.radius_edge));
+  if (!(std::isfinite(o.min_feature) && o.min_feature >= 0))
+    return bad(fmt::format("min-feature must be a length, or 0 for off, not {}", o.min_feature));
   if (o.time_limit && !positive(*o.time_limit))
     return bad(fmt::format("time-limit must be positive seconds, not {}", *o.time_limit));
   if (o.threads < 0 || o.threads > 4096)
@@ -133,6 +127,7 @@ std::string options_json(const Options& o, const Settings& s, const Model& model
   j["gaps"] = o.gaps;
   j["conformal"] = o.conformal == Conformal::off ? "off" : o.conformal == Conformal::strict ? "strict" : "auto";
   j["overlaps"] = o.overlaps == Overlaps::split ? "split" : "refuse";
+  j["min_feature"] = o.min_feature;
   j["recovery"] = o.recovery == RecoveryMode::paper ? "paper" : "conjoint";
   j["refine_interior"] = o.refine_interior;
   j["improve"] = o.improve;

@@ -22,9 +22,6 @@ struct Settings {
   SizingOptions sizing;
 };
 
-/// Millimetres of a unit ("mm", "cm", "m", "inch", "um", "ft"); empty if unknown.
-std::optional<double> millimetres(const std::string& unit);
-
 /// An error names the local size whose entity does not exist, or a size out of all proportion to the body.
 Result<Settings> resolve(const Options& options, const Model& model);
 

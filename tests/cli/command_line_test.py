@@ -96,6 +96,10 @@ class UsageErrors(CommandLineTest):
             ["mesh", box, "-o", mesh, "--time-limit", "0"],
             ["mesh", box, "-o", mesh, "--threads", "-3"],
             ["mesh", box, "-o", mesh, "--radius-edge", "nan"],
+            ["mesh", box, "-o", mesh, "--min-feature", "-1"],
+            ["mesh", box, "-o", mesh, "--min-feature", "nan"],
+            ["mesh", box, "-o", mesh, "--min-feature", "5"],
+            ["info", box, "--min-feature", "-1"],
             ["mesh", box, "-o", mesh, "--memory-limit", "much"],
             ["mesh", box, "-o", mesh, "--memory-limit", "1M"],
             ["info"],
@@ -463,6 +467,40 @@ class Assemblies(CommandLineTest):
         meshes = [self.folder / f"{threads}.msh" for threads in (1, 2)]
         for threads, mesh in zip((1, 2), meshes):
             self.expect(0, "mesh", BODIES / "overlapping.brep", "-o", mesh, "--conformal", "off", "--threads", threads)
+        self.assertEqual(*(mesh.read_bytes() for mesh in meshes))
+
+
+class Details(CommandLineTest):
+    def test_what_is_suppressed_is_told_and_checked_so(self):
+        body, mesh, report = BODIES / "pricked.step", self.folder / "out.msh", self.folder / "report.json"
+        faces = json.loads(self.expect(0, "info", "--json", body).stdout)["faces"]
+        self.assertEqual(len(faces), 8)
+        bore = sorted(face["id"] for face in faces if face["area"] < 1)
+        # The same length, in the units of the output.
+        for option in (["--min-feature", "0.5"], ["--unit", "cm", "--min-feature", "0.05"]):
+            done = self.expect(0, "mesh", body, "-o", mesh, "--report", report, *option)
+            self.assertRegex(done.stdout, rf"suppressed +2 details below {option[-1]} .*: faces {bore[0]}, {bore[1]}")
+            document = json.loads(report.read_text())
+            self.assertEqual([(detail["kind"], detail["id"]) for detail in document["suppressed"]],
+                             [("face", face) for face in bore])
+            self.assertEqual(sorted([face["face"] for face in document["faces"]] + bore), list(range(1, 9)))
+            checked = self.expect(0, "check", "--json", mesh, body, "--min-feature", option[-1]).stdout
+            volume = json.loads(checked)["solids"][0]["volume"]
+            self.assertAlmostEqual(volume, 6000 if option[0] == "--min-feature" else 6, delta=1e-9 * volume)
+            self.expect(5, "check", mesh, body)
+
+    def test_info_lists_it(self):
+        body = BODIES / "pricked.step"
+        self.assertNotIn("suppressed: ", self.expect(0, "info", body).stdout)
+        text = self.expect(0, "info", body, "--min-feature", "0.5").stdout
+        self.assertEqual(len(re.findall(r"^suppressed: face \d+.* width 0\.\d+ at \(5, 10, 2.*\)$", text, re.M)), 2, text)
+        details = json.loads(self.expect(0, "info", "--json", body, "--min-feature", "0.5").stdout)["suppressed"]
+        self.assertEqual(len(details), 2)
+
+    def test_nothing_to_suppress_changes_nothing(self):
+        meshes = [self.folder / name for name in ("plain.msh", "asked.msh")]
+        for mesh, option in zip(meshes, ([], ["--min-feature", "0.05"])):
+            self.expect(0, "mesh", BODIES / "pricked.step", "-o", mesh, *option)
         self.assertEqual(*(mesh.read_bytes() for mesh in meshes))
 
 

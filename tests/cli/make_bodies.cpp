@@ -1,6 +1,7 @@
 // Writes the CAD files that the tests of the command line mesh: box.step, plate.step (a plate with a bore), ball.brep,
-// touching.brep and overlapping.brep (two boxes that touch or overlap and share nothing, a third apart);
-// and those that it must refuse: a plane and a half space without end, an open shell, a body without size, a vertex.
+// pricked.step (the box with a tiny blind bore), touching.brep and overlapping.brep (two boxes that touch or overlap
+// and share nothing, a third apart); and those that it must refuse: a plane and a half space without end, an open
+// shell, a body without size, a vertex.
 #include <BRepAlgoAPI_Cut.hxx>
 #include <BRepBuilderAPI_MakeFace.hxx>
 #include <BRepBuilderAPI_MakeVertex.hxx>
@@ -73,8 +74,10 @@ int main(int argc, char** argv) {
   const std::string folder = std::string(argv[1]) + "/";
   const TopoDS_Shape box = BRepPrimAPI_MakeBox(10, 20, 30).Shape();
   const TopoDS_Shape bore = BRepPrimAPI_MakeCylinder(gp_Ax2(gp_Pnt(5, 10, -1), gp_Dir(0, 0, 1)), 3, 40).Shape();
+  const TopoDS_Shape prick = BRepPrimAPI_MakeCylinder(gp_Ax2(gp_Pnt(5, 10, 29.9), gp_Dir(0, 0, 1)), 0.1, 1).Shape();
   const bool done = write_step(box, folder + "box.step") &&
                     write_step(BRepAlgoAPI_Cut(box, bore).Shape(), folder + "plate.step") &&
+                    write_step(BRepAlgoAPI_Cut(box, prick).Shape(), folder + "pricked.step") &&
                     write_brep(BRepPrimAPI_MakeSphere(5).Shape(), folder + "ball.brep") &&
                     write_brep(three_boxes(10), folder + "touching.brep") &&
                     write_brep(three_boxes(7), folder + "overlapping.brep") && write_bad_bodies(folder);

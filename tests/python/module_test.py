@@ -44,6 +44,13 @@ class Meshing(unittest.TestCase):
         self.assertEqual(made.report["counts"]["tets"], len(made.tets))
         self.assertTrue(made.report["valid"])
 
+    def test_details_are_suppressed_on_request(self):
+        self.assertEqual(curvetet.mesh(BODIES / "pricked.step").report["suppressed"], [])
+        made = curvetet.mesh(BODIES / "pricked.step", min_feature=0.5)
+        gone = {detail["id"] for detail in made.report["suppressed"]}
+        self.assertEqual(len(gone), 2)
+        self.assertEqual({face["id"] for face in made.faces} | gone, set(range(1, 9)))
+
     def test_nodes_know_their_place_on_the_cad(self):
         made = curvetet.mesh(str(BODIES / "ball.brep"), size=2)
         self.assertEqual(len(made.node_dimensions), len(made.points))
@@ -128,7 +135,8 @@ class Failures(unittest.TestCase):
         for wrong in ({"overlaps": "perhaps"}, {"recovery": ""}):
             with self.assertRaises(ValueError, msg=str(wrong)):
                 curvetet.mesh(box, **wrong)
-        for wrong in ({"size": -1}, {"size": float("nan")}, {"unit": "parsec"}, {"face_sizes": {"nobody": 1}}):
+        for wrong in ({"size": -1}, {"size": float("nan")}, {"unit": "parsec"}, {"face_sizes": {"nobody": 1}},
+                      {"min_feature": -1.0}):
             with self.assertRaises(curvetet.Error, msg=str(wrong)) as caught:
                 curvetet.mesh(box, **wrong)
             self.assertEqual(caught.exception.exit_code, 2)
