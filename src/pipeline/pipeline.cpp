@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <chrono>
 #include <fstream>
+#include <utility>
 
 #include "boundary/classify.h"
 #include "cad/kept_body.h"
@@ -178,8 +179,8 @@ class Run {
   void end() {
     clock_.stop();
     report_.stages = clock_.times();
-    if (options_.dossier.empty() || report_.errors.empty()) return;
-    if (report_.errors.front().code != ErrorCode::cancelled) leave_dossier();
+    const bool failed = !report_.errors.empty() && !context_.cancelled();
+    if (failed && !options_.dossier.empty()) leave_dossier();
   }
 
  private:
@@ -234,17 +235,24 @@ class Run {
 
   /// Whatever happens here, the run's own error stays what it is.
   void leave_dossier() {
-    context_.deadline.reset();
-    const auto incomplete = [&](const Error& error) {
-      report_.warnings.push_back(fmt::format("the dossier is not complete: {} [{}]", error.message, name(error.code)));
-      context_.log(LogLevel::warning, report_.warnings.back());
-    };
-    try {
-      const Status written = write_dossier(failed_run(), options_.dossier);
-      if (!written) return incomplete(written.error());
+    // Time that is up must not keep the dossier from being written.
+    const auto deadline = std::exchange(context_.deadline, std::nullopt);
+    const Status written = try_dossier();
+    context_.deadline = deadline;
+    if (written) {
       context_.log(LogLevel::info, "what failed, and how to repeat it, is in " + options_.dossier);
+      return;
+    }
+    const Error& error = written.error();
+    report_.warnings.push_back(fmt::format("the dossier is not complete: {} [{}]", error.message, name(error.code)));
+    context_.log(LogLevel::warning, report_.warnings.back());
+  }
+
+  Status try_dossier() {
+    try {
+      return write_dossier(failed_run(), options_.dossier);
     } catch (const std::exception& error) {
-      incomplete({ErrorCode::internal, error.what()});
+      return Error{ErrorCode::internal, error.what()};
     }
   }
 
@@ -287,9 +295,12 @@ class Run {
   Trace trace_;
 };
 
+/// What came as an exception, as the dossier tells it.
 Error error_of(const std::exception& thrown, const Options& options) {
-  const bool memory = dynamic_cast<const std::bad_alloc*>(&thrown) != nullptr && options.memory_limit > 0;
-  return {memory ? ErrorCode::memory_limit : ErrorCode::internal, thrown.what(), {}, {}, {}};
+  if (dynamic_cast<const std::bad_alloc*>(&thrown) == nullptr)
+    return {ErrorCode::internal, thrown.what(), {}, {}, "please report it, with this folder"};
+  if (options.memory_limit == 0) return {ErrorCode::internal, "out of memory", {}, {}, "ask for a larger size"};
+  return {ErrorCode::memory_limit, "the memory limit was reached", {}, {}, "raise the limit, or ask for a larger size"};
 }
 
 }  // namespace
