@@ -1,7 +1,9 @@
 #include "options.h"
 
 #include <pybind11/stl.h>
+#include <pybind11/stl/filesystem.h>
 
+#include <filesystem>
 #include <map>
 #include <memory>
 #include <string>
@@ -81,6 +83,10 @@ const std::map<std::string, Setter>& setters() {
       {"threads", member("threads", &Options::threads)},
       {"seed", member("seed", &Options::seed)},
       {"isolate_cad", member("isolate_cad", &Options::isolate_cad)},
+      {"dossier",
+       [](Options& options, const py::handle& value) {
+         options.dossier = as<std::filesystem::path>("dossier", value).string();
+       }},
       {"cad_helper", member("cad_helper", &Options::cad_helper)},
   };
   return table;

@@ -29,6 +29,8 @@ Examples:
   curvetet info bracket.step
   curvetet check bracket.msh bracket.step
   curvetet picture bracket.msh -o bracket.png --cut x=0.5
+  curvetet mesh bracket.step -o bracket.msh --dossier why
+  curvetet replay why/replay.bin
   curvetet batch parts/ --out meshes --jobs 4 --time-limit 120 -- --size D/20
 
 Exit codes:
@@ -47,6 +49,11 @@ struct RawMesh {
   std::vector<std::string> outputs, face_sizes, edge_sizes, solid_sizes;
   std::string format, recovery = "conjoint";
   bool parametric = false, no_gaps = false, no_refine = false, no_improve = false, no_isolate = false;
+};
+
+struct RawReplay {
+  std::string size, recovery;
+  std::vector<std::string> outputs, face_sizes, edge_sizes, solid_sizes;
 };
 
 struct RawPicture {
@@ -104,7 +111,7 @@ std::string place_of(const std::string& path) {
   return std::filesystem::weakly_canonical(std::filesystem::absolute(path, ignored), ignored).string();
 }
 
-/// No file is written over the input or over another output.
+/// Nothing is written over the input or over another output.
 void refuse_collisions(const MeshCommand& command) {
   std::set<std::string> taken{place_of(command.input)};
   for (const Output& output : command.outputs) {
@@ -113,6 +120,8 @@ void refuse_collisions(const MeshCommand& command) {
   if (!command.report.empty() && !taken.insert(place_of(command.report)).second) {
     refuse(command.report + " is named twice, or is the input itself");
   }
+  if (const std::string& folder = command.options.dossier; !folder.empty() && taken.contains(place_of(folder)))
+    refuse(folder + " is named twice, or is the input itself");
 }
 
 void read_size(const std::string& text, Options& options) {
@@ -128,6 +137,11 @@ void read_size(const std::string& text, Options& options) {
   }
 }
 
+void refuse_little_memory(const Options& options) {
+  if (options.memory_limit != 0 && options.memory_limit < kLeastMemory)
+    refuse("--memory-limit must be at least 64M: the program itself needs some");
+}
+
 void finish_mesh(const RawMesh& raw, MeshCommand& command) {
   read_size(raw.size, command.options);
   bool format_used = raw.format.empty();
@@ -141,15 +155,30 @@ void finish_mesh(const RawMesh& raw, MeshCommand& command) {
   add_local_sizes(raw.edge_sizes, LocalSize::Kind::edge, command.options.local_sizes);
   add_local_sizes(raw.solid_sizes, LocalSize::Kind::solid, command.options.local_sizes);
   Options& options = command.options;
-  if (options.memory_limit != 0 && options.memory_limit < kLeastMemory) {
-    refuse("--memory-limit must be at least 64M: the program itself needs some");
-  }
+  refuse_little_memory(options);
   options.recovery = raw.recovery == "paper" ? RecoveryMode::paper : RecoveryMode::conjoint;
   options.gaps = !raw.no_gaps;
   options.refine_interior = !raw.no_refine;
   options.improve = !raw.no_improve;
   options.isolate_cad = !raw.no_isolate;
   options.cad_helper = own_program();
+}
+
+void finish_replay(const RawReplay& raw, ReplayCommand& command) {
+  Options sizes;
+  read_size(raw.size, sizes);
+  ReplayChanges& changes = command.changes;
+  if (!raw.size.empty()) {
+    changes.size = sizes.size;
+    if (!sizes.size) changes.size_divisor = sizes.size_divisor;
+  }
+  add_local_sizes(raw.face_sizes, LocalSize::Kind::face, changes.local_sizes);
+  add_local_sizes(raw.edge_sizes, LocalSize::Kind::edge, changes.local_sizes);
+  add_local_sizes(raw.solid_sizes, LocalSize::Kind::solid, changes.local_sizes);
+  if (!raw.recovery.empty()) changes.recovery = raw.recovery == "paper" ? RecoveryMode::paper : RecoveryMode::conjoint;
+  for (const std::string& path : raw.outputs) command.mesh.outputs.push_back({path, write_options(path, {})});
+  refuse_collisions(command.mesh);
+  refuse_little_memory(command.mesh.options);
 }
 
 void finish_picture(const RawPicture& raw, PictureCommand& command) {
@@ -182,16 +211,31 @@ void add_repeatable(CLI::App& app, const std::string& name, std::vector<std::str
   app.add_option(name, values, help)->allow_extra_args(false)->type_name(type)->required(required);
 }
 
+constexpr const char* kSizes = "Sizes";
+
+CLI::Option* add_size(CLI::App& app, std::string& size, const std::string& otherwise) {
+  return app
+      .add_option("--size", size,
+                  "largest edge length; D/20: a twentieth of the body's diagonal, likewise any part; " + otherwise)
+      ->check(not_empty())
+      ->type_name("LENGTH")
+      ->group(kSizes);
+}
+
+template <class Raw>
+void describe_local_sizes(CLI::App& app, Raw& raw) {
+  add_repeatable(app, "--face-size", raw.face_sizes, "ID_OR_NAME=LENGTH", "size on a face; may be repeated");
+  add_repeatable(app, "--edge-size", raw.edge_sizes, "ID_OR_NAME=LENGTH", "size on an edge; may be repeated");
+  add_repeatable(app, "--solid-size", raw.solid_sizes, "ID_OR_NAME=LENGTH", "size in a solid; may be repeated");
+  for (const char* name : {"--face-size", "--edge-size", "--solid-size"}) app.get_option(name)->group(kSizes);
+}
+
 void describe_sizes(CLI::App& app, RawMesh& raw, Options& options) {
-  const std::string group = "Sizes";
+  const std::string group = kSizes;
   const auto length = [&](const char* name, std::optional<double>& value, const char* help) {
     app.add_option(name, value, help)->check(not_empty())->type_name("LENGTH")->group(group);
   };
-  app.add_option("--size", raw.size,
-                 "largest edge length; D/20: a twentieth of the body's diagonal, likewise any part; default: D/10")
-      ->check(not_empty())
-      ->type_name("LENGTH")
-      ->group(group);
+  add_size(app, raw.size, "default: D/10");
   length("--min-size", options.min_size,
          "floor of derived sizes; default: a thousandth of the size, a fiftieth for the curvature of free forms");
   app.add_option("--curvature", options.curvature, "elements per full turn of a curve or surface; 0: off")
@@ -204,10 +248,7 @@ void describe_sizes(CLI::App& app, RawMesh& raw, Options& options) {
       ->capture_default_str()
       ->group(group);
   app.add_flag("--no-gaps", raw.no_gaps, "do not look at gaps and thin walls when choosing sizes")->group(group);
-  add_repeatable(app, "--face-size", raw.face_sizes, "ID_OR_NAME=LENGTH", "size on a face; may be repeated");
-  add_repeatable(app, "--edge-size", raw.edge_sizes, "ID_OR_NAME=LENGTH", "size on an edge; may be repeated");
-  add_repeatable(app, "--solid-size", raw.solid_sizes, "ID_OR_NAME=LENGTH", "size in a solid; may be repeated");
-  for (const char* name : {"--face-size", "--edge-size", "--solid-size"}) app.get_option(name)->group(group);
+  describe_local_sizes(app, raw);
 }
 
 void describe_stages(CLI::App& app, RawMesh& raw, Options& options) {
@@ -255,6 +296,23 @@ void add_min_feature(CLI::App& app, double& length, const std::string& unit) {
       ->type_name("LENGTH");
 }
 
+constexpr const char* kLimits = "Limits";
+
+void describe_limits(CLI::App& app, Options& options) {
+  app.add_option("--threads", options.threads, "0: all cores; the mesh does not depend on it")
+      ->type_name("NUMBER")
+      ->capture_default_str()
+      ->group(kLimits);
+  app.add_option("--time-limit", options.time_limit, "seconds for the whole run")
+      ->check(not_empty())
+      ->type_name("SECONDS")
+      ->group(kLimits);
+  app.add_option("--memory-limit", options.memory_limit, "bytes of memory for the program's data, as 800M or 4G")
+      ->transform(CLI::AsSizeValue(false))
+      ->option_text("BYTES")
+      ->group(kLimits);
+}
+
 void describe_units_and_limits(CLI::App& app, RawMesh& raw, Options& options) {
   app.add_option("--unit", options.unit, "unit of the output: um, mm, cm, m, inch, ft; default: mm, or --input-unit")
       ->type_name("UNIT")
@@ -262,24 +320,12 @@ void describe_units_and_limits(CLI::App& app, RawMesh& raw, Options& options) {
   app.add_option("--input-unit", options.input_unit, "unit of an input that carries none (BREP); default: mm")
       ->type_name("UNIT")
       ->group("Units");
-  const std::string group = "Limits";
-  app.add_option("--threads", options.threads, "0: all cores; the mesh does not depend on it")
-      ->type_name("NUMBER")
-      ->capture_default_str()
-      ->group(group);
+  app.add_flag("--no-isolate", raw.no_isolate, "read the CAD file in this process, not in a helper")->group(kLimits);
   app.add_option("--seed", options.seed, "of the random choices; same seed, same mesh")
       ->type_name("NUMBER")
       ->capture_default_str()
-      ->group(group);
-  app.add_option("--time-limit", options.time_limit, "seconds for the whole run")
-      ->check(not_empty())
-      ->type_name("SECONDS")
-      ->group(group);
-  app.add_option("--memory-limit", options.memory_limit, "bytes of memory for the program's data, as 800M or 4G")
-      ->transform(CLI::AsSizeValue(false))
-      ->option_text("BYTES")
-      ->group(group);
-  app.add_flag("--no-isolate", raw.no_isolate, "read the CAD file in this process, not in a helper")->group(group);
+      ->group(kLimits);
+  describe_limits(app, options);
 }
 
 CLI::App* describe_mesh(CLI::App& app, RawMesh& raw, MeshCommand& command) {
@@ -294,6 +340,11 @@ CLI::App* describe_mesh(CLI::App& app, RawMesh& raw, MeshCommand& command) {
   mesh->add_flag("--parametric", raw.parametric,
                  ".msh: boundary nodes with their parameters as Gmsh's parametric nodes");
   mesh->add_option("--report", command.report, "JSON report, also written when meshing fails")->type_name("FILE");
+  mesh->add_option("--dossier", command.options.dossier,
+                   "folder for what a failed run leaves: words, the CAD faces, the surface meshes of the spot, and the "
+                   "state for replay")
+      ->check(not_empty())
+      ->type_name("DIR");
   mesh->add_flag("--keep-invalid", command.keep_invalid, "write the mesh even if the final check finds it invalid");
   add_conformal(*mesh, command.options.conformal);
   add_overlaps(*mesh, command.options.overlaps);
@@ -304,6 +355,41 @@ CLI::App* describe_mesh(CLI::App& app, RawMesh& raw, MeshCommand& command) {
   describe_stages(*mesh, raw, command.options);
   describe_units_and_limits(*mesh, raw, command.options);
   return mesh;
+}
+
+CLI::App* describe_replay(CLI::App& app, RawReplay& raw, ReplayCommand& command) {
+  CLI::App* replay =
+      app.add_subcommand("replay",
+                         "Make the last attempt of a failed run again, from the replay.bin of its dossier, and say "
+                         "whether it fails alike; "
+                         "with other sizes, recovery or seed from the first attempt. Exit codes as of mesh");
+  MeshCommand& mesh = command.mesh;
+  ReplayChanges& changes = command.changes;
+  replay->add_option("FILE", mesh.input, "replay.bin of a dossier")->required()->type_name("FILE");
+  add_repeatable(*replay, "-o,--output", raw.outputs, "FILE",
+                 "mesh to write if it succeeds now, by its ending; may be repeated");
+  replay->add_option("--report", mesh.report, "JSON report, also written when meshing fails")->type_name("FILE");
+  replay->add_option("--dossier", mesh.options.dossier, "folder for what this run leaves if it fails")
+      ->check(not_empty())
+      ->type_name("DIR");
+  replay->add_flag("--keep-invalid", mesh.keep_invalid, "write the mesh even if the final check finds it invalid");
+  CLI::Option* quiet = replay->add_flag("-q,--quiet", mesh.quiet, "say nothing but errors")->option_text(" ");
+  replay->add_flag("-v,--verbose", mesh.verbose, "say more")->excludes(quiet)->option_text(" ");
+  add_size(*replay, raw.size, "default: as in the run");
+  replay->add_option("--min-size", changes.min_size, "floor of derived sizes")
+      ->check(not_empty())
+      ->type_name("LENGTH")
+      ->group(kSizes);
+  replay->add_option("--curvature", changes.curvature, "elements per full turn of a curve or surface; 0: off")
+      ->type_name("NUMBER")
+      ->group(kSizes);
+  describe_local_sizes(*replay, raw);
+  replay->add_option("--recovery", raw.recovery, "how faces are recovered: conjoint, or the paper to the letter")
+      ->check(CLI::IsMember({"conjoint", "paper"}))
+      ->type_name("MODE");
+  replay->add_option("--seed", changes.seed, "of the random choices")->type_name("NUMBER");
+  describe_limits(*replay, mesh.options);
+  return replay;
 }
 
 CLI::App* describe_info(CLI::App& app, InfoCommand& command) {
@@ -381,6 +467,11 @@ CLI::App* describe_batch(CLI::App& app, BatchCommand& command) {
       ->check(CLI::IsMember({"msh", "msh2", "vtu", "mesh", "stl"}).description(""))
       ->type_name("FORMAT")
       ->capture_default_str();
+  batch
+      ->add_option("--dossier", command.dossiers,
+                   "folder for dossiers: of each body that fails, in a folder named as its mesh without the ending")
+      ->check(not_empty())
+      ->type_name("DIR");
   batch->add_flag("--restart", command.restart, "forget what is done already in the folder");
   batch->add_flag("-q,--quiet", command.quiet, "only the summary and errors")->option_text(" ");
   batch->add_option("MESH_OPTIONS", command.mesh_options, "after --: options of mesh for all bodies")->type_name("...");
@@ -393,7 +484,8 @@ CLI::App* describe_batch(CLI::App& app, BatchCommand& command) {
 std::optional<std::string> wrong_batch_options(const std::vector<std::string>& options, const std::string& format) {
   for (const std::string& option : options) {
     const std::string word = option.substr(0, option.find('='));
-    for (const char* own : {"-o", "--output", "--report", "--time-limit", "--memory-limit", "-h", "--help"})
+    for (const char* own :
+         {"-o", "--output", "--report", "--dossier", "--time-limit", "--memory-limit", "-h", "--help"})
       if (word == own) return word + " cannot be handed to the bodies of a batch";
   }
   CLI::App app;
@@ -418,13 +510,16 @@ Arguments parse(int argc, char** argv) {
   app.require_subcommand(1);
   app.footer(kFooter);
   RawMesh raw_mesh;
+  RawReplay raw_replay;
   RawPicture raw_picture;
   MeshCommand mesh;
+  ReplayCommand replay;
   InfoCommand info;
   CheckCommand check;
   PictureCommand picture;
   BatchCommand batch;
   const CLI::App* mesh_app = describe_mesh(app, raw_mesh, mesh);
+  const CLI::App* replay_app = describe_replay(app, raw_replay, replay);
   const CLI::App* info_app = describe_info(app, info);
   const CLI::App* check_app = describe_check(app, check);
   const CLI::App* picture_app = describe_picture(app, raw_picture, picture);
@@ -434,6 +529,7 @@ Arguments parse(int argc, char** argv) {
   try {
     app.parse(argc, argv);
     if (mesh_app->parsed()) finish_mesh(raw_mesh, mesh);
+    if (replay_app->parsed()) finish_replay(raw_replay, replay);
     if (picture_app->parsed()) finish_picture(raw_picture, picture);
     if (batch_app->parsed()) {
       if (const auto wrong = wrong_batch_options(batch.mesh_options, batch.format)) refuse(*wrong);
@@ -448,6 +544,7 @@ Arguments parse(int argc, char** argv) {
     return arguments;
   }
   if (mesh_app->parsed()) arguments.mesh = std::move(mesh);
+  if (replay_app->parsed()) arguments.replay = std::move(replay);
   if (info_app->parsed()) arguments.info = std::move(info);
   if (check_app->parsed()) arguments.check = std::move(check);
   if (picture_app->parsed()) arguments.picture = std::move(picture);

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <optional>
 #include <string>
 #include <vector>
@@ -25,6 +26,20 @@ struct MeshCommand {
   Options options;
   std::string report;  ///< empty: none
   bool quiet = false, verbose = false, keep_invalid = false;
+};
+
+/// What a replay is to do otherwise than the run that left the state; nothing: the attempt as it was.
+struct ReplayChanges {
+  std::optional<double> size, size_divisor;  ///< one of them
+  std::optional<double> min_size, curvature;
+  std::vector<LocalSize> local_sizes;
+  std::optional<RecoveryMode> recovery;
+  std::optional<std::uint64_t> seed;
+};
+
+struct ReplayCommand {
+  MeshCommand mesh;  ///< input is the state; of the options only limits, threads and dossier are meant
+  ReplayChanges changes;
 };
 
 struct InfoCommand {
@@ -52,6 +67,7 @@ struct BatchCommand {
   double time_limit = 600;  ///< seconds for each body
   std::size_t memory_limit = 0;
   std::string format = "msh";
+  std::string dossiers;  ///< folder for a dossier of each body that fails; empty: none
   std::vector<std::string> mesh_options;
   bool restart = false, quiet = false;
 };
@@ -69,6 +85,7 @@ struct Arguments {
   std::optional<CheckCommand> check;
   std::optional<PictureCommand> picture;
   std::optional<BatchCommand> batch;
+  std::optional<ReplayCommand> replay;
   int exit_code = 0;
 };
 

@@ -19,6 +19,7 @@ int run(int argc, char** argv) {
   if (arguments.check) return run_check(*arguments.check);
   if (arguments.picture) return run_picture(*arguments.picture);
   if (arguments.batch) return run_batch(*arguments.batch);
+  if (arguments.replay) return run_replay(*arguments.replay);
   return arguments.exit_code;
 }
 

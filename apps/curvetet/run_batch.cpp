@@ -159,6 +159,10 @@ class Batch {
                                        "--quiet",
                                        "--time-limit",
                                        fmt::format("{}", command_.time_limit)};
+    if (!command_.dossiers.empty()) {
+      arguments.emplace_back("--dossier");
+      arguments.push_back((fs::path(command_.dossiers) / body.stem).string());
+    }
     if (command_.memory_limit > 0) {
       arguments.emplace_back("--memory-limit");
       arguments.push_back(std::to_string(command_.memory_limit));

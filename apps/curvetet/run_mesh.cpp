@@ -1,5 +1,5 @@
-// `curvetet mesh`: meshes, writes the outputs and the report, and says in words what was done. The report is written
-// whatever happened, a mesh only if it is valid or the user insists.
+// `curvetet mesh`, and what it has in common with `replay`: meshes, writes the outputs and the report, and says in
+// words what was done. The report is written whatever happened, a mesh only if it is valid or the user insists.
 #include <fmt/format.h>
 #include <sys/resource.h>
 #include <unistd.h>
@@ -11,6 +11,7 @@
 
 #include "commands.h"
 #include "curvetet/curvetet.h"
+#include "mesh_to_files.h"
 #include "summary.h"
 #include "terminal.h"
 
@@ -96,13 +97,15 @@ class DataLimit {
   bool is_set_ = false;
 };
 
-Result<MeshOutput> mesh_within_limits(const MeshCommand& command, Context& context, Report& report) {
+Result<MeshOutput> mesh_within_limits(const MeshCommand& command, const Mesher& mesher, Context& context,
+                                      Report& report) {
   const DataLimit limit(command.options.memory_limit);
-  return mesh({command.input}, command.options, context, &report);
+  return mesher(context, &report);
 }
 
 /// An exception from within is an error like others, so that the report is still kept.
-Result<MeshOutput> mesh_or_internal_error(const MeshCommand& command, Context& context, Report& report) {
+Result<MeshOutput> mesh_or_internal_error(const MeshCommand& command, const Mesher& mesher, Context& context,
+                                          Report& report) {
   const auto kept = [&](Error error) {
     report.version = version();
     report.input = command.input;
@@ -110,7 +113,7 @@ Result<MeshOutput> mesh_or_internal_error(const MeshCommand& command, Context& c
     return error;
   };
   try {
-    return mesh_within_limits(command, context, report);
+    return mesh_within_limits(command, mesher, context, report);
   } catch (const std::bad_alloc&) {
     if (command.options.memory_limit == 0) return kept({ErrorCode::internal, "out of memory", {}, {}, kPleaseReport});
     return kept({ErrorCode::memory_limit,
@@ -125,7 +128,7 @@ Result<MeshOutput> mesh_or_internal_error(const MeshCommand& command, Context& c
 
 }  // namespace
 
-int run_mesh(const MeshCommand& command) {
+int mesh_to_files(const MeshCommand& command, const Mesher& mesher, Report& report) {
   if (const Status writable = check_outputs(command); !writable) return show_error(writable.error());
   Context context;
   Terminal terminal(command.quiet ? Volume::quiet : command.verbose ? Volume::verbose : Volume::normal);
@@ -134,11 +137,19 @@ int run_mesh(const MeshCommand& command) {
   context.threads = command.options.threads;
   context.seed = command.options.seed;
   context.memory_limit = command.options.memory_limit;
-  Report report;
-  const Result<MeshOutput> made = mesh_or_internal_error(command, context, report);
+  const Result<MeshOutput> made = mesh_or_internal_error(command, mesher, context, report);
   terminal.clear_bar();
-  if (made) return finish(command, made.value());
-  return keep_report(command, report, show_error(made.error()));
+  if (!made) return keep_report(command, report, show_error(made.error()));
+  report = made.value().report;
+  return finish(command, made.value());
+}
+
+int run_mesh(const MeshCommand& command) {
+  Report report;
+  const Mesher mesher = [&](Context& context, Report* failed) {
+    return mesh({command.input}, command.options, context, failed);
+  };
+  return mesh_to_files(command, mesher, report);
 }
 
 }  // namespace curvetet::cli

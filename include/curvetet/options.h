@@ -59,6 +59,10 @@ struct Options {
   std::size_t memory_limit = 0;      ///< bytes of our own arrays; 0: none
   int threads = 0;                   ///< 0: all cores
   std::uint64_t seed = 1;
+
+  /// Folder for what a failed run leaves to look at and to repeat (docs/dossier.md); empty: none. Made if missing, and
+  /// only if a run fails otherwise than by being cancelled. What cannot be written there is a warning.
+  std::string dossier;
 };
 
 }  // namespace curvetet

@@ -47,6 +47,7 @@ def mesh(path, *, size=None, size_divisor=10.0, min_size=None, curvature=12.0, c
          gaps=True, face_sizes=None, edge_sizes=None, solid_sizes=None, size_callback=None, unit="", input_unit="",
          conformal="auto", overlaps="refuse", min_feature=0.0, recovery="conjoint", refine_interior=True, improve=True,
          radius_edge=2.0, time_limit=None, memory_limit=0, threads=0, seed=1, isolate_cad=True, cad_helper=None,
+         dossier=None,
          keep_invalid=False, progress=None, log=None):
     """Meshes a CAD file (STEP, IGES or BREP) and returns a Mesh.
 
@@ -78,6 +79,8 @@ def mesh(path, *, size=None, size_divisor=10.0, min_size=None, curvature=12.0, c
     seed          another seed, another mesh
     isolate_cad   read the file in a process of its own, so that a crash of the CAD kernel is an Error
     cad_helper    the curvetet program that reads; default: the one in this package
+    dossier       folder for what a failed run leaves: words, the CAD faces, the surface meshes of the spot, and the state
+                  for `curvetet replay`; nothing is written if there is a valid mesh, or at Ctrl-C
     keep_invalid  return a mesh that did not pass its final check (report["valid"] says so) instead of raising
     progress      called with (stage, fraction of the whole run)
     log           called with (level, message); level is "debug", "info", "warning" or "error"

@@ -16,6 +16,19 @@ constexpr double kVolumeError = 1e-5;
 
 }  // namespace
 
+const char* type_name(TopAbs_ShapeEnum type) {
+  switch (type) {
+    case TopAbs_SOLID:
+      return "solid";
+    case TopAbs_FACE:
+      return "face";
+    case TopAbs_EDGE:
+      return "edge";
+    default:
+      return "vertex";
+  }
+}
+
 std::vector<Label>& labels_of(CadBody& body, TopAbs_ShapeEnum type) {
   switch (type) {
     case TopAbs_SOLID:

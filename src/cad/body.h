@@ -38,6 +38,8 @@ struct CadBody {
 
 /// The four types that carry labels, in the order solids, faces, edges, vertices.
 inline constexpr std::array kLabelled{TopAbs_SOLID, TopAbs_FACE, TopAbs_EDGE, TopAbs_VERTEX};
+/// "solid", "face", "edge" or "vertex".
+const char* type_name(TopAbs_ShapeEnum type);
 std::vector<Label>& labels_of(CadBody& body, TopAbs_ShapeEnum type);
 const std::vector<Label>& labels_of(const CadBody& body, TopAbs_ShapeEnum type);
 

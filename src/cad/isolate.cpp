@@ -24,6 +24,7 @@
 #include "base/child_program.h"
 #include "cad/guard.h"
 #include "cad/heal.h"
+#include "cad/parts_of_body.h"
 #include "cad/read.h"
 #include "cad/transfer.h"
 
@@ -58,6 +59,19 @@ std::vector<std::uint32_t> ids_of(const std::string& list) {
   for (std::string id; std::getline(in, id, ',');)
     ids.push_back(static_cast<std::uint32_t>(std::strtoul(id.c_str(), nullptr, 10)));
   return ids;
+}
+
+std::string list_of(const std::vector<std::string>& words) {
+  std::string list;
+  for (const std::string& word : words) list += word + ',';
+  return list;
+}
+
+std::vector<std::string> words_of(const std::string& list) {
+  std::vector<std::string> words;
+  std::istringstream in(list);
+  for (std::string word; std::getline(in, word, ',');) words.push_back(word);
+  return words;
 }
 
 Joining joining_of(const std::string& word) {
@@ -146,7 +160,7 @@ std::optional<std::string> find_helper(const LoadOptions& options) {
 }
 
 Result<CadBody> read_isolated(const std::string& path, const std::string& helper, const LoadOptions& options,
-                              Context& context) {
+                              const std::vector<std::string>& parts, Context& context) {
   if (std::getenv(kHelperVariable) != nullptr) {
     return Error{ErrorCode::bad_option,
                  "a helper process was asked to start a helper: this program does not serve as one",
@@ -161,7 +175,8 @@ Result<CadBody> read_isolated(const std::string& path, const std::string& helper
   ChildProgram child(helper,
                      {helper, kHelperFlag, path, out_path, options.input_unit,
                       std::to_string(options.isolate_memory_limit), std::to_string(allowed), word_of(options.joining),
-                      list_of(options.suspects), exact(options.min_feature.value), options.min_feature.unit},
+                      list_of(options.suspects), exact(options.min_feature.value), options.min_feature.unit,
+                      list_of(parts)},
                      "/dev/null", {std::string(kHelperVariable) + "=1", end_with_parent_variable()});
   if (!child.started()) return Error{ErrorCode::bad_option, "cannot start the helper program " + helper};
   const auto start = Clock::now();
@@ -191,13 +206,17 @@ Result<CadBody> read_isolated(const std::string& path, const std::string& helper
 
 int run_cad_helper(int argc, char** argv) {
   constexpr int kUsage = 2, kUnwritable = 3;
-  if (argc != 11 || std::string(argv[1]) != kHelperFlag) return kUsage;
+  if (argc != 12 || std::string(argv[1]) != kHelperFlag) return kUsage;
   const std::string path = argv[2], out_path = argv[3], unit = argv[4];
   end_with_parent();
   limit_this_process(std::strtoull(argv[5], nullptr, 10), std::strtod(argv[6], nullptr));
   if (!announce_transfer(out_path)) return kUnwritable;
   Result<CadBody> body = read_body(path, unit);
   if (!body) return write_transfer(body.error(), out_path) ? 0 : kUnwritable;
+  if (const std::vector<std::string> parts = words_of(argv[11]); !parts.empty()) {
+    const Result<CadBody> some = parts_of_body(body.value(), parts, path);
+    return (some ? write_transfer(some.value(), out_path) : write_transfer(some.error(), out_path)) ? 0 : kUnwritable;
+  }
   const Length min_feature{std::strtod(argv[9], nullptr), argv[10]};
   const Result<Model> model = heal_and_convert(body.value(), path, {joining_of(argv[7]), min_feature, ids_of(argv[8])});
   const bool written = model ? write_transfer(body.value(), out_path) : write_transfer(model.error(), out_path);

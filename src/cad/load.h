@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -26,8 +27,14 @@ struct LoadOptions {
   std::string helper;  ///< program that serves as helper ("curvetet" itself); empty: this executable
 };
 
+struct CadBody;
+/// The healed body that a Model was made of, for those who may want it again (cad/kept_body.h).
+using KeptBody = std::shared_ptr<const CadBody>;
+
 /// Reads STEP, IGES or BREP (by content, then by ending). Ids are those of the input shape, carried through healing.
-Result<Model> load_model(const std::string& path, const LoadOptions& options, Context& context);
+/// `kept`, if given, receives the body.
+Result<Model> load_model(const std::string& path, const LoadOptions& options, Context& context,
+                         KeptBody* kept = nullptr);
 
 /// What the helper process runs: reads `path`, heals, writes the healed shape and its labels to `out_path`. Exit code
 /// for main.

@@ -9,6 +9,7 @@
 #include "cad/body.h"
 #include "cad/guard.h"
 #include "cad/heal.h"
+#include "cad/kept_body.h"
 
 namespace curvetet {
 
@@ -44,7 +45,8 @@ Status label_part(CadBody& body, const TopoDS_Shape& shape, const PartLabel& lab
 
 }  // namespace
 
-Result<Model> model_from_shape(const TopoDS_Shape& shape, const ShapeOptions& options, Context& context) {
+Result<Model> model_from_shape(const TopoDS_Shape& shape, const ShapeOptions& options, Context& context,
+                               KeptBody* kept) {
   if (context.should_stop()) return context.stop_error("load");
   const std::string& name = options.labels.name;
   if (shape.IsNull()) return Error{ErrorCode::no_faces, name + " is a null shape"};
@@ -56,7 +58,17 @@ Result<Model> model_from_shape(const TopoDS_Shape& shape, const ShapeOptions& op
   label_all(body);
   for (const PartLabel& label : options.labels.parts)
     if (const Status labelled = label_part(body, shape, label, name); !labelled) return labelled.error();
-  return heal_and_convert(body, name, {options.joining, options.min_feature, options.suspects});
+  Result<Model> model = heal_and_convert(body, name, {options.joining, options.min_feature, options.suspects});
+  if (model && kept != nullptr) *kept = std::make_shared<const CadBody>(std::move(body));
+  return model;
+}
+
+Result<std::string> brep_of_parts(const TopoDS_Shape& shape, const std::vector<std::string>& parts,
+                                  const std::string& name) {
+  CadBody body;
+  body.shape = shape;
+  label_all(body);
+  return brep_of_parts(std::make_shared<const CadBody>(std::move(body)), parts, name);
 }
 
 }  // namespace curvetet

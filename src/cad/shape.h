@@ -10,6 +10,7 @@
 #include "base/error.h"
 #include "base/units.h"
 #include "cad/joining.h"
+#include "cad/load.h"
 #include "curvetet/occt.h"
 #include "geometry/model.h"
 
@@ -24,7 +25,12 @@ struct ShapeOptions {
 };
 
 /// Ids are those of TopExp::MapShapes on the shape. Repairs, where the shape needs any, run in this process, on a copy:
-/// the shape is not changed.
-Result<Model> model_from_shape(const TopoDS_Shape& shape, const ShapeOptions& options, Context& context);
+/// the shape is not changed. `kept`, if given, receives the healed copy.
+Result<Model> model_from_shape(const TopoDS_Shape& shape, const ShapeOptions& options, Context& context,
+                               KeptBody* kept = nullptr);
+
+/// As brep_of_parts of a file (cad/kept_body.h), for a shape.
+Result<std::string> brep_of_parts(const TopoDS_Shape& shape, const std::vector<std::string>& parts,
+                                  const std::string& name);
 
 }  // namespace curvetet

@@ -3,6 +3,7 @@
 #include "cad/transfer.h"
 
 #include <BinTools.hxx>
+#include <algorithm>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
@@ -78,19 +79,6 @@ class Fields {
   std::vector<std::string> fields_;
 };
 
-const char* type_name(TopAbs_ShapeEnum type) {
-  switch (type) {
-    case TopAbs_SOLID:
-      return "solid";
-    case TopAbs_FACE:
-      return "face";
-    case TopAbs_EDGE:
-      return "edge";
-    default:
-      return "vertex";
-  }
-}
-
 void write_label(std::ostream& out, const char* type, const Label& label, const std::string& path) {
   out << type << '\t' << label.cad_id << '\t' << escaped(label.name) << '\t' << escaped(path);
   if (label.colour) {
@@ -131,6 +119,23 @@ void read_error(const Fields& fields, Error& error) {
   if (fields.size() >= 7) error.where = Vec3{number(fields.at(4)), number(fields.at(5)), number(fields.at(6))};
 }
 
+void write_labels(const CadBody& body, std::ostream& out) {
+  out << "unit\t" << escaped(body.unit) << "\nfile unit\t" << escaped(body.file_unit) << '\n';
+  for (const HealingNote& note : body.notes)
+    out << "note\t" << escaped(note.entity) << '\t' << escaped(note.what) << '\n';
+  for (const auto& [type, id] : body.last_ids) out << "last\t" << type_name(type) << '\t' << id << '\n';
+  for (const SuppressedDetail& detail : body.suppressed) write_suppressed(out, detail);
+  for (const TopAbs_ShapeEnum type : kLabelled) {
+    const auto& labels = labels_of(body, type);
+    for (std::size_t i = 0; i < labels.size(); ++i) {
+      write_label(out, type_name(type), labels[i], type == TopAbs_SOLID ? body.solid_paths[i] : "");
+    }
+  }
+  for (const double area : body.measures.face_areas) out << "area\t" << hex(area) << '\n';
+  for (const double volume : body.measures.shell_volumes) out << "volume\t" << hex(volume) << '\n';
+  out << "end\n";
+}
+
 /// What the label file says.
 struct Parsed {
   CadBody body;
@@ -167,6 +172,13 @@ Error broken() {
   return Error{ErrorCode::reader_crashed, "the helper that reads the CAD file ended before it was done"};
 }
 
+/// Does the shape have as many parts as there are labels?
+bool labels_fit(const CadBody& body) {
+  return !body.shape.IsNull() && std::all_of(kLabelled.begin(), kLabelled.end(), [&](TopAbs_ShapeEnum type) {
+    return labels_of(body, type).size() == static_cast<std::size_t>(sub_shapes(body.shape, type).Extent());
+  });
+}
+
 }  // namespace
 
 bool announce_transfer(const std::string& out_path) {
@@ -178,20 +190,7 @@ bool announce_transfer(const std::string& out_path) {
 bool write_transfer(const CadBody& body, const std::string& out_path) {
   if (!BinTools::Write(body.shape, out_path.c_str(), false, false, BinTools_FormatVersion_CURRENT)) return false;
   std::ofstream out(labels_path(out_path), std::ios::app);
-  out << "unit\t" << escaped(body.unit) << "\nfile unit\t" << escaped(body.file_unit) << '\n';
-  for (const HealingNote& note : body.notes)
-    out << "note\t" << escaped(note.entity) << '\t' << escaped(note.what) << '\n';
-  for (const auto& [type, id] : body.last_ids) out << "last\t" << type_name(type) << '\t' << id << '\n';
-  for (const SuppressedDetail& detail : body.suppressed) write_suppressed(out, detail);
-  for (const TopAbs_ShapeEnum type : kLabelled) {
-    const auto& labels = labels_of(body, type);
-    for (std::size_t i = 0; i < labels.size(); ++i) {
-      write_label(out, type_name(type), labels[i], type == TopAbs_SOLID ? body.solid_paths[i] : "");
-    }
-  }
-  for (const double area : body.measures.face_areas) out << "area\t" << hex(area) << '\n';
-  for (const double volume : body.measures.shell_volumes) out << "volume\t" << hex(volume) << '\n';
-  out << "end\n";
+  write_labels(body, out);
   return out.flush().good();
 }
 
@@ -217,11 +216,30 @@ Result<CadBody> read_transfer(const std::string& out_path) {
   if (!parsed.complete) return broken();
   if (parsed.error) return *parsed.error;
   return guarded(ErrorCode::reader_crashed, "the helper's shape", [&]() -> Result<CadBody> {
-    if (!BinTools::Read(parsed.body.shape, out_path.c_str()) || parsed.body.shape.IsNull()) return broken();
-    for (const TopAbs_ShapeEnum type : kLabelled) {
-      const auto count = static_cast<std::size_t>(sub_shapes(parsed.body.shape, type).Extent());
-      if (labels_of(parsed.body, type).size() != count) return broken();
-    }
+    if (!BinTools::Read(parsed.body.shape, out_path.c_str()) || !labels_fit(parsed.body)) return broken();
+    return std::move(parsed.body);
+  });
+}
+
+Result<std::string> pack(const CadBody& body) {
+  return guarded(ErrorCode::internal, "cannot keep the body", [&]() -> Result<std::string> {
+    std::ostringstream out;
+    out << kGreeting << '\n';
+    write_labels(body, out);
+    BinTools::Write(body.shape, out, false, false, BinTools_FormatVersion_CURRENT);
+    return std::move(out).str();
+  });
+}
+
+Result<CadBody> unpack(const std::string& bytes) {
+  const QuietMessages quiet;
+  const Error wrong{ErrorCode::file_unreadable, "what was kept of the body is damaged, or of another version"};
+  return guarded(ErrorCode::file_unreadable, "what was kept of the body", [&]() -> Result<CadBody> {
+    std::istringstream in(bytes);
+    Parsed parsed = parse(in);
+    if (bytes.rfind(kGreeting, 0) != 0 || !parsed.complete || parsed.error) return wrong;
+    BinTools::Read(parsed.body.shape, in);
+    if (!labels_fit(parsed.body)) return wrong;
     return std::move(parsed.body);
   });
 }

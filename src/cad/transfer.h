@@ -1,5 +1,5 @@
 // A labelled shape, or the error that took its place, through a pair of files: what the helper process hands to its
-// parent.
+// parent; and a labelled shape as bytes.
 #pragma once
 
 #include <string>
@@ -19,5 +19,11 @@ bool write_transfer(const Error& error, const std::string& out_path);
 bool transfer_announced(const std::string& out_path);
 /// What was written: the body, or the helper's error. An incomplete pair of files is an error of kind reader_crashed.
 Result<CadBody> read_transfer(const std::string& out_path);
+
+/// The body as bytes, from which unpack makes the same body to the last bit. Bytes that are not from pack, or of
+/// another version, are an error (file_unreadable); damage is to be ruled out before, since OpenCASCADE trusts what it
+/// reads.
+Result<std::string> pack(const CadBody& body);
+Result<CadBody> unpack(const std::string& bytes);
 
 }  // namespace curvetet

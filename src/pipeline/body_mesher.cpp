@@ -16,20 +16,23 @@ namespace {
 
 class BodyMesher {
  public:
-  BodyMesher(const Model& model, SizeField& sizes, const Settings& settings, RecoveryMode mode, StageClock& clock,
-             Context& context)
-      : model_(model), sizes_(sizes), settings_(settings), mode_(mode), clock_(clock), context_(context) {}
+  BodyMesher(const Model& model, SizeField& sizes, const Settings& settings, RecoveryMode mode, OuterLoop& loop,
+             StageClock& clock, Context& context)
+      : model_(model), sizes_(sizes), settings_(settings), mode_(mode), loop_(loop), clock_(clock), context_(context) {}
 
   Result<BodyMesherResult> run() {
+    for (const std::vector<SizeSource>& asked : loop_.asked) sizes_.add(asked);
     BodyMesherResult result;
-    for (result.rounds = 0;; ++result.rounds) {
+    while (true) {
+      result.rounds = loop_.round();
       result.mesh = std::make_unique<BodyMesh>();
       auto failures = attempt(*result.mesh);
       if (!failures.ok()) return failures.error();
       result.failures = std::move(failures.value());
       if (result.failures.empty() || result.rounds == kOuterRounds || hopeless(result.failures)) return result;
       for (const RecoveryFailure& f : result.failures) log(f);
-      sizes_.add(sources(result.failures));
+      loop_.asked.push_back(sources(result.failures));
+      sizes_.add(loop_.asked.back());
     }
   }
 
@@ -157,6 +160,7 @@ class BodyMesher {
   SizeField& sizes_;
   const Settings& settings_;
   RecoveryMode mode_;
+  OuterLoop& loop_;
   StageClock& clock_;
   Context& context_;
 };
@@ -173,8 +177,8 @@ std::vector<VertexId> vertices_of(const FaceMesh& mesh) {
 }
 
 Result<BodyMesherResult> mesh_body(const Model& model, SizeField& sizes, const Settings& settings,
-                                   const Options& options, StageClock& clock, Context& context) {
-  return BodyMesher(model, sizes, settings, options.recovery, clock, context).run();
+                                   const Options& options, OuterLoop& loop, StageClock& clock, Context& context) {
+  return BodyMesher(model, sizes, settings, options.recovery, loop, clock, context).run();
 }
 
 }  // namespace curvetet

@@ -32,6 +32,13 @@ struct BodyMesh {
   std::size_t initial_surface_points = 0;
 };
 
+/// Where the outer loop stands: for each round that failed, the sizes that it asked for.
+struct OuterLoop {
+  std::size_t part = 0;  ///< of the parts that are meshed apart, the one that it runs for
+  std::vector<std::vector<SizeSource>> asked;
+  int round() const { return static_cast<int>(asked.size()); }
+};
+
 struct BodyMesherResult {
   std::unique_ptr<BodyMesh> mesh;
   int rounds = 0;                         ///< of the outer loop that were needed beyond the first
@@ -43,7 +50,8 @@ inline constexpr int kOuterRounds = 6;
 /// The vertices that the triangles of a face mesh use, each once (a vertex on a seam is two nodes).
 std::vector<VertexId> vertices_of(const FaceMesh& mesh);
 
+/// Begins at the round where `loop` stands, and leaves it where the last attempt was made, whatever became of it.
 Result<BodyMesherResult> mesh_body(const Model& model, SizeField& sizes, const Settings& settings,
-                                   const Options& options, StageClock& clock, Context& context);
+                                   const Options& options, OuterLoop& loop, StageClock& clock, Context& context);
 
 }  // namespace curvetet

@@ -1,4 +1,5 @@
 // The pipeline for shapes in memory.
+#include "cad/kept_body.h"
 #include "cad/shape.h"
 #include "curvetet/occt.h"
 #include "pipeline/pipeline.h"
@@ -19,9 +20,15 @@ Result<MeshOutput> mesh(const TopoDS_Shape& shape, const ShapeLabels& labels, co
   load.labels = labels;
   load.joining = {options.conformal, options.overlaps};
   load.min_feature = {options.min_feature, options.unit};
+  KeptBody kept;
   source.load = [&](const std::vector<std::uint32_t>& suspects, Context& while_loading) {
     load.suspects = suspects;
-    return model_from_shape(shape, load, while_loading);
+    const bool keep = suspects.empty() && !options.dossier.empty();
+    return model_from_shape(shape, load, while_loading, keep ? &kept : nullptr);
+  };
+  source.body = [&] { return pack_body(kept); };
+  source.parts = [&](const std::vector<std::string>& parts, Context&) {
+    return brep_of_parts(shape, parts, labels.name);
   };
   return mesh_source(source, options, context, report_on_failure);
 }

@@ -7,11 +7,14 @@
 #include <algorithm>
 #include <chrono>
 #include <fstream>
+#include <utility>
 
 #include "boundary/classify.h"
+#include "cad/kept_body.h"
 #include "cad/load.h"
 #include "pipeline/assemble.h"
 #include "pipeline/body_mesher.h"
+#include "pipeline/dossier.h"
 #include "pipeline/join_parts.h"
 #include "pipeline/report_builder.h"
 #include "pipeline/settings.h"
@@ -35,15 +38,22 @@ std::string file_hash(const std::string& path) {
   return fmt::format("{:016x}", hash);
 }
 
+/// What a run leaves for its dossier, whatever becomes of it.
+struct Trace {
+  OuterLoop loop;
+  std::optional<Mesh> spot;  ///< of the failure that is told first
+};
+
 /// The stages from sizes to the finished mesh, for a whole body or a part of one.
 class BodyRun {
  public:
-  BodyRun(const Source& source, const Model& model, const Settings& settings, const Options& options, StageClock& clock,
-          Context& context, Report& report)
+  BodyRun(const Source& source, const Model& model, const Settings& settings, const Options& options, Trace& trace,
+          StageClock& clock, Context& context, Report& report)
       : source_(source),
         model_(model),
         settings_(settings),
         options_(options),
+        trace_(trace),
         clock_(clock),
         context_(context),
         report_(report) {}
@@ -65,32 +75,53 @@ class BodyRun {
     auto sizes = make_size_field(model_, settings_.sizing, context_);
     if (!sizes.ok()) return sizes.error();
     sizes_ = std::move(sizes.value());
-    auto body = mesh_body(model_, sizes_, settings_, options_, clock_, context_);
+    if (!loop_fits())
+      return Error{ErrorCode::file_unreadable, "the state of " + source_.name + " names faces that it has not"};
+    auto body = mesh_body(model_, sizes_, settings_, options_, trace_.loop, clock_, context_);
     if (!body.ok()) return body.error();
     body_ = std::move(body.value());
     report_reductions(report_, model_, settings_, sizes_);
     report_.rounds = std::max(report_.rounds, body_.rounds);
     if (body_.failures.empty()) return Done{};
-    for (const RecoveryFailure& f : body_.failures) report_.errors.push_back(to_error(f, model_, settings_));
-    confirm_crossing();
+    for (const RecoveryFailure& f : body_.failures)
+      report_.errors.push_back(to_error(f, model_, settings_, gap_between(model_, *body_.mesh, f, reach(f))));
+    const RecoveryFailure& first = told_first();
+    if (!options_.dossier.empty()) trace_.spot = spot_of(model_, settings_, *body_.mesh, first, reach(first));
     return report_.errors.front();
   }
 
-  /// The CAD kernel is asked about the first crossing only: it reads the body again for that.
-  void confirm_crossing() {
+  /// How far from the place of a failure something still belongs to it.
+  double reach(const RecoveryFailure& failure) const {
+    constexpr double kSizes = 4;
+    return kSizes * sizes_.at(failure.where);
+  }
+
+  /// An outer loop that was read from a file is to be of this body.
+  bool loop_fits() const {
+    const auto known = [&](FaceId f) { return !f.valid() || f.value() < model_.faces.size(); };
+    for (const std::vector<SizeSource>& asked : trace_.loop.asked)
+      for (const SizeSource& s : asked)
+        if (!known(s.face) || !known(s.other)) return false;
+    return true;
+  }
+
+  /// The first failure, or a crossing that the CAD kernel confirms. It is asked about the first one only: it reads the
+  /// body again for that.
+  const RecoveryFailure& told_first() {
     const auto failure =
         std::find_if(body_.failures.begin(), body_.failures.end(), [](const RecoveryFailure& f) { return f.crossing; });
-    if (failure == body_.failures.end() || failure->proved) return;
+    if (failure == body_.failures.end() || failure->proved) return body_.failures.front();
     std::vector<std::uint32_t> faces;
     for (const FaceId f : failure->faces) faces.push_back(model_.faces[f].label.cad_id);
     const Result<Model> again = source_.load(faces, context_);
-    if (again || again.error().code != ErrorCode::self_intersection) return;
+    if (again || again.error().code != ErrorCode::self_intersection) return body_.failures.front();
     // What is proved is told first.
     const auto error = report_.errors.begin() + (failure - body_.failures.begin());
     error->code = again.error().code;
     error->message += "; " + again.error().message;
     error->hint = again.error().hint;
     std::rotate(report_.errors.begin(), error, error + 1);
+    return *failure;
   }
 
   Status mesh_volume_stages() {
@@ -115,6 +146,7 @@ class BodyRun {
   const Model& model_;
   const Settings& settings_;
   const Options& options_;
+  Trace& trace_;
   StageClock& clock_;
   Context& context_;
   Report& report_;
@@ -138,15 +170,17 @@ class Run {
     context_.seed = options_.seed;
     const Status loaded = load();
     if (!loaded.ok()) return loaded.error();
-    Result<Mesh> mesh =
-        apart() ? mesh_parts() : BodyRun(source_, model_, settings_, options_, clock_, context_, report_)();
+    Result<Mesh> mesh = apart() ? mesh_parts() : mesh_one(model_, settings_, 0);
     if (!mesh.ok()) return mesh.error();
     return finish(std::move(mesh.value()));
   }
 
-  void keep_times() {
+  /// To be called when the run is over: times, and the dossier if it failed.
+  void end() {
     clock_.stop();
     report_.stages = clock_.times();
+    const bool failed = !report_.errors.empty() && !context_.cancelled();
+    if (failed && !options_.dossier.empty()) leave_dossier();
   }
 
  private:
@@ -162,7 +196,13 @@ class Run {
     if (!settings.ok()) return settings.error();
     settings_ = std::move(settings.value());
     report_input(report_, model_, settings_, options_);
+    is_ready_ = true;
     return Done{};
+  }
+
+  Result<Mesh> mesh_one(const Model& model, const Settings& settings, std::size_t part) {
+    trace_.loop = part == source_.loop.part ? source_.loop : OuterLoop{part, {}};
+    return BodyRun(source_, model, settings, options_, trace_, clock_, context_, report_)();
   }
 
   /// Parts that share nothing, one after the other: each as if it were alone.
@@ -174,7 +214,7 @@ class Run {
       clock_.set_span(kLoadDone + static_cast<double>(i) * share, share);
       const Part part = make_part(model_, parts[i]);
       const Settings settings = settings_of(part, settings_);
-      Result<Mesh> made = BodyRun(source_, part.model, settings, options_, clock_, context_, report_)();
+      Result<Mesh> made = mesh_one(part.model, settings, i);
       if (!made.ok()) return made.error();
       append(mesh, made.value(), part);
     }
@@ -193,6 +233,54 @@ class Run {
     return mesh;
   }
 
+  /// Whatever happens here, the run's own error stays what it is.
+  void leave_dossier() {
+    // Time that is up must not keep the dossier from being written.
+    const auto deadline = std::exchange(context_.deadline, std::nullopt);
+    const Status written = try_dossier();
+    context_.deadline = deadline;
+    if (written) {
+      context_.log(LogLevel::info, "what failed, and how to repeat it, is in " + options_.dossier);
+      return;
+    }
+    const Error& error = written.error();
+    report_.warnings.push_back(fmt::format("the dossier is not complete: {} [{}]", error.message, name(error.code)));
+    context_.log(LogLevel::warning, report_.warnings.back());
+  }
+
+  Status try_dossier() {
+    try {
+      return write_dossier(failed_run(), options_.dossier);
+    } catch (const std::exception& error) {
+      return Error{ErrorCode::internal, error.what()};
+    }
+  }
+
+  FailedRun failed_run() {
+    FailedRun run{.report = report_};
+    if (is_ready_) run.in_words = entities_in_words(model_);
+    run.spot = std::move(trace_.spot);
+    run.parts = [&](const std::vector<std::string>& names) { return source_.parts(names, context_); };
+    if (!is_ready_)
+      run.no_state = "the run ended before there was an attempt to repeat";
+    else if (options_.size_callback)
+      run.no_state = "sizes came from a function of the caller, which no file can hold";
+    else
+      keep_state(run);
+    return run;
+  }
+
+  void keep_state(FailedRun& run) {
+    Result<std::string> body = source_.body();
+    if (!body) {
+      run.no_state = body.error().message;
+      return;
+    }
+    run.state = State{report_.version, source_.name, options_, trace_.loop, report_.errors.front()};
+    run.state->size = model_.frame.length_to_cad(settings_.size) * settings_.unit_scale;
+    run.state->body = std::move(body.value());
+  }
+
   // Shares of the run.
   static constexpr double kLoadDone = 0.05, kVolumeDone = 0.92;
 
@@ -203,7 +291,17 @@ class Run {
   StageClock clock_;
   Model model_;
   Settings settings_;
+  bool is_ready_ = false;  ///< loaded, and the options fit the body
+  Trace trace_;
 };
+
+/// What came as an exception, as the dossier tells it.
+Error error_of(const std::exception& thrown, const Options& options) {
+  if (dynamic_cast<const std::bad_alloc*>(&thrown) == nullptr)
+    return {ErrorCode::internal, thrown.what(), {}, {}, "please report it, with this folder"};
+  if (options.memory_limit == 0) return {ErrorCode::internal, "out of memory", {}, {}, "ask for a larger size"};
+  return {ErrorCode::memory_limit, "the memory limit was reached", {}, {}, "raise the limit, or ask for a larger size"};
+}
 
 }  // namespace
 
@@ -213,10 +311,17 @@ Result<MeshOutput> mesh_source(const Source& source, const Options& options, Con
   report.version = version();
   report.input = source.name;
   Run run(source, options, context, report);
-  Result<Mesh> made = run();
-  run.keep_times();
+  Result<Mesh> made = Error{};
+  try {
+    made = run();
+  } catch (const std::exception& thrown) {
+    report.errors.insert(report.errors.begin(), error_of(thrown, options));
+    run.end();
+    throw;
+  }
+  if (!made.ok() && report.errors.empty()) report.errors.push_back(made.error());
+  run.end();
   if (made.ok()) return MeshOutput{std::move(made.value()), std::move(report)};
-  if (report.errors.empty()) report.errors.push_back(made.error());
   const Error error = made.error();
   if (report_on_failure != nullptr) *report_on_failure = std::move(report);
   return error;
@@ -233,9 +338,15 @@ Result<MeshOutput> mesh(const Input& input, const Options& options, Context& con
   load.joining = {options.conformal, options.overlaps};
   load.min_feature = {options.min_feature, options.unit};
   if (options.time_limit) load.isolate_time_limit = std::max(load.isolate_time_limit, *options.time_limit);
+  KeptBody kept;
   source.load = [&](const std::vector<std::uint32_t>& suspects, Context& while_loading) {
     load.suspects = suspects;
-    return load_model(input.path, load, while_loading);
+    const bool keep = suspects.empty() && !options.dossier.empty();
+    return load_model(input.path, load, while_loading, keep ? &kept : nullptr);
+  };
+  source.body = [&] { return pack_body(kept); };
+  source.parts = [&](const std::vector<std::string>& parts, Context& while_reading) {
+    return brep_of_parts(input.path, load, parts, while_reading);
   };
   return mesh_source(source, options, context, report_on_failure);
 }

@@ -8,6 +8,7 @@
 
 #include "curvetet/curvetet.h"
 #include "geometry/model.h"
+#include "pipeline/body_mesher.h"
 
 namespace curvetet {
 
@@ -18,6 +19,11 @@ struct Source {
   /// (self_intersection) if the CAD kernel confirms it.
   std::function<Result<Model>(const std::vector<std::uint32_t>& suspects, Context&)> load;
   std::function<std::string()> hash;  ///< of its bytes, asked for once loading went well; empty if it has none
+  // What a dossier asks for: the healed body that the model was made of, as pack_body gives it, and parts of the input
+  // ("face 12") as BREP text.
+  std::function<Result<std::string>()> body;
+  std::function<Result<std::string>(const std::vector<std::string>& parts, Context&)> parts;
+  OuterLoop loop;  ///< where it stands from the beginning
 };
 
 Result<MeshOutput> mesh_source(const Source& source, const Options& options, Context& context,

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
+#include <map>
 #include <optional>
 #include <set>
 
@@ -245,29 +246,57 @@ void report_mesh(Report& report, const Mesh& mesh, const ValidationReport& valid
   }
 }
 
-Error to_error(const RecoveryFailure& failure, const Model& model, const Settings& settings) {
+std::map<std::string, std::string> entities_in_words(const Model& model) {
+  std::map<std::string, std::string> words;
+  const auto add = [&](const char* type, const Label& label, const char* kind, const std::string& called) {
+    const std::string plain = fmt::format("{} {}", type, label.cad_id);
+    words[plain] = fmt::format("{} ({}{})", plain, kind, called);
+  };
+  for (std::size_t f = 0; f < model.faces.size(); ++f) {
+    const ModelFace& face = model.faces[FaceId(f)];
+    add("face", face.label, name(face.surface->kind()), ", " + model.face_name(FaceId(f)));
+  }
+  for (std::size_t e = 0; e < model.edges.size(); ++e) {
+    const ModelEdge& edge = model.edges[EdgeId(e)];
+    add("edge", edge.label, edge.curve ? name(edge.curve->kind()) : "pole", ", " + model.edge_name(EdgeId(e)));
+  }
+  for (std::size_t s = 0; s < model.solids.size(); ++s)
+    add("solid", model.solids[SolidId(s)].label, "", model.solid_name(SolidId(s)));
+  return words;
+}
+
+Error to_error(const RecoveryFailure& failure, const Model& model, const Settings& settings,
+               const std::optional<FaceGap>& gap) {
   Error error;
   error.code = failure.proved ? ErrorCode::self_intersection : ErrorCode::recovery_failed;
-  std::string faces;
+  std::string faces, sizes;
+  const auto out = [&](double length) { return model.frame.length_to_cad(length) * settings.unit_scale; };
   for (FaceId f : failure.faces) {
-    error.entities.push_back(fmt::format("face {}", model.faces[f].label.cad_id));
+    const std::string entity = fmt::format("face {}", model.faces[f].label.cad_id);
+    if (std::find(error.entities.begin(), error.entities.end(), entity) != error.entities.end()) continue;
+    error.entities.push_back(entity);
     faces += fmt::format("{}{}", faces.empty() ? "" : ", ", model.face_name(f));
+    sizes += fmt::format(" --face-size {}={:.3g}", model.faces[f].label.cad_id, out(failure.size));
   }
   const Vec3 p = out_point(failure.where, model, settings);
   error.where = p;
   error.message =
       fmt::format("{} ({}) at ({:.6g}, {:.6g}, {:.6g}) {}", failure.what, faces, p.x, p.y, p.z, settings.unit);
-  const double size = model.frame.length_to_cad(failure.size) * settings.unit_scale;
-  if (const auto gap = gap_of_input(failure, model)) {
+  if (gap) {
+    const Vec3 q = out_point(gap->where, model, settings);
+    error.message += fmt::format("; {} and {} come within {:.3g} {} at ({:.6g}, {:.6g}, {:.6g})", error.entities[0],
+                                 error.entities[1], out(gap->length), settings.unit, q.x, q.y, q.z);
+  }
+  if (const auto off = gap_of_input(failure, model)) {
     error.code = ErrorCode::bad_face;
-    error.message +=
-        fmt::format(": {} {}, by {:.3g} {}, more than the size at which this happens", gap->entity, gap->what,
-                    model.frame.length_to_cad(gap->amount) * settings.unit_scale, settings.unit);
+    error.message += fmt::format(": {} {}, by {:.3g} {}, more than the size at which this happens", off->entity,
+                                 off->what, out(off->amount), settings.unit);
     error.hint = "repair it in the CAD system, or export with a tighter tolerance";
-  } else if (failure.proved)
+  } else if (failure.proved) {
     error.hint = "mend the body: these faces must not cross";
-  else if (size > 0)
-    error.hint = fmt::format("a size of {:.3g} {} on these faces may do (--face-size)", size, settings.unit);
+  } else if (failure.size > 0) {
+    error.hint = fmt::format("a size of {:.3g} {} there may do:{}", out(failure.size), settings.unit, sizes);
+  }
   return error;
 }
 

@@ -1,8 +1,12 @@
 // Fills the report from what the stages returned.
 #pragma once
 
+#include <map>
+#include <string>
+
 #include "curvetet/report.h"
 #include "pipeline/body_mesher.h"
+#include "pipeline/spot.h"
 #include "quality/validate.h"
 
 namespace curvetet {
@@ -20,7 +24,11 @@ void report_fineness(Report& report, const Model& model, const Settings& setting
                      const BodyMesh& mesh);
 void report_reductions(Report& report, const Model& model, const Settings& settings, const SizeField& sizes);
 void report_mesh(Report& report, const Mesh& mesh, const ValidationReport& validation);
-/// A failure of recovery as an error in the user's terms.
-Error to_error(const RecoveryFailure& failure, const Model& model, const Settings& settings);
+/// A failure of recovery as an error in the user's terms; `gap`: how close its two faces come, if that is known.
+Error to_error(const RecoveryFailure& failure, const Model& model, const Settings& settings,
+               const std::optional<FaceGap>& gap = std::nullopt);
+
+/// For entities as errors name them, the same with kind and name: "face 12" and "face 12 (cylinder, inlet)".
+std::map<std::string, std::string> entities_in_words(const Model& model);
 
 }  // namespace curvetet

@@ -9,6 +9,7 @@ import pathlib
 import pty
 import re
 import resource
+import shlex
 import signal
 import subprocess
 import sys
@@ -56,9 +57,9 @@ class CommandLineTest(unittest.TestCase):
 class Help(CommandLineTest):
     def test_help_and_version(self):
         text = self.expect(0, "--help").stdout
-        for word in ("mesh", "info", "check", "picture", "batch", "Exit codes", "Examples"):
+        for word in ("mesh", "replay", "info", "check", "picture", "batch", "Exit codes", "Examples"):
             self.assertIn(word, text)
-        for command in ("mesh", "info", "check", "picture", "batch"):
+        for command in ("mesh", "replay", "info", "check", "picture", "batch"):
             self.assertIn("Examples", self.expect(0, command, "--help").stdout)
         text = self.expect(0, "mesh", "--help").stdout
         for option in ("--size", "--unit", "--recovery", "--face-size", "--time-limit", "LENGTH", "SECONDS"):
@@ -102,6 +103,11 @@ class UsageErrors(CommandLineTest):
             ["info", box, "--min-feature", "-1"],
             ["mesh", box, "-o", mesh, "--memory-limit", "much"],
             ["mesh", box, "-o", mesh, "--memory-limit", "1M"],
+            ["mesh", box, "-o", mesh, "--dossier", ""],
+            ["mesh", box, "-o", mesh, "--dossier", mesh],
+            ["replay"],
+            ["replay", box, "-o", box],
+            ["replay", box, "--size", "x"],
             ["info"],
             ["check"],
             ["picture", mesh],
@@ -502,6 +508,107 @@ class Details(CommandLineTest):
         for mesh, option in zip(meshes, ([], ["--min-feature", "0.05"])):
             self.expect(0, "mesh", BODIES / "pricked.step", "-o", mesh, *option)
         self.assertEqual(*(mesh.read_bytes() for mesh in meshes))
+
+
+class Dossiers(CommandLineTest):
+    ALL = ["faces.brep", "replay.bin", "report.json", "spot.vtu", "summary.txt"]
+
+    def setUp(self):
+        super().setUp()
+        self.mesh, self.dossier = self.folder / "out.msh", self.folder / "why not"
+
+    def fail_to_mesh(self, *arguments, **options):
+        return self.expect(3, "mesh", BODIES / "crossed.brep", "-o", self.mesh, "--dossier", self.dossier, *arguments,
+                           **options)
+
+    def kept(self, folder=None):
+        return sorted(path.name for path in (folder or self.dossier).iterdir())
+
+    def test_what_fails_is_told_shown_and_repeated(self):
+        report = self.folder / "report.json"
+        said = self.fail_to_mesh("--report", report)
+        self.assertIn(str(self.dossier), said.stderr)
+        self.assertFalse(self.mesh.exists())
+        self.assertEqual(self.kept(), self.ALL)
+        error = json.loads(report.read_text())["errors"][0]
+        self.assertEqual(json.loads((self.dossier / "report.json").read_text())["errors"][0], error)
+        summary = (self.dossier / "summary.txt").read_text()
+        for text in (error["message"], *error["entities"], "crossed.brep"):
+            self.assertIn(text, summary)
+        command = re.search(r"^  curvetet (replay .*)$", summary, re.MULTILINE).group(1)
+        again = self.expect(3, *shlex.split(command))
+        self.assertIn("the failure recurs", again.stdout)
+        self.assertIn(error["message"], again.stderr)
+
+    def test_a_replay_needs_neither_the_body_nor_its_dossier(self):
+        body = self.folder / "body.brep"
+        body.write_bytes((BODIES / "crossed.brep").read_bytes())
+        self.expect(3, "mesh", body, "-o", self.mesh, "--dossier", self.dossier, "--no-isolate")
+        body.unlink()
+        second = self.folder / "second"
+        first = self.expect(3, "replay", self.dossier / "replay.bin", "--dossier", second)
+        self.assertEqual(self.kept(second), self.ALL)
+        self.assertEqual(self.expect(3, "replay", second / "replay.bin").stdout, first.stdout)
+
+    def test_a_replay_with_other_options(self):
+        box = BODIES / "box.step"
+        self.expect(4, "mesh", box, "-o", self.mesh, "--size", "D/700", "--time-limit", "5", "--dossier", self.dossier)
+        said = self.expect(0, "replay", self.dossier / "replay.bin", "--size", "D/5", "-o", self.mesh)
+        self.assertIn("does not recur", said.stdout)
+        self.expect(0, "check", self.mesh, box)
+
+    def test_nothing_is_left_of_what_succeeds(self):
+        self.expect(0, "mesh", BODIES / "box.step", "-o", self.mesh, "--dossier", self.dossier)
+        self.assertEqual(self.files(), ["out.msh"])
+
+    def test_a_body_that_cannot_be_read(self):
+        self.expect(3, "mesh", BODIES / "open.brep", "-o", self.mesh, "--dossier", self.dossier)
+        self.assertEqual(self.kept(), ["faces.brep", "report.json", "summary.txt"])
+        self.assertIn("replay.bin", (self.dossier / "summary.txt").read_text())
+
+    def test_files_that_are_no_states(self):
+        self.fail_to_mesh()
+        state, whole = self.folder / "state.bin", (self.dossier / "replay.bin").read_bytes()
+        for damaged in (b"", whole[:20], whole[:-1], whole[:200] + b"?" + whole[201:], whole + b"."):
+            state.write_bytes(damaged)
+            self.expect(3, "replay", state)
+        self.expect(3, "replay", BODIES / "box.step")
+        self.expect(3, "replay", self.folder / "missing.bin")
+        self.expect(3, "replay", self.folder)
+
+    def test_a_place_that_cannot_be_written_changes_no_exit_code(self):
+        plain = self.expect(3, "mesh", BODIES / "crossed.brep", "-o", self.mesh)
+        self.dossier.write_text("a file")
+        said = self.fail_to_mesh()
+        self.assertIn("warning: the dossier is not complete", said.stderr)
+        self.assertIn("[output_unwritable]", said.stderr)
+        self.assertEqual(plain.stderr.split("error:")[1], said.stderr.split("error:")[1])
+        self.assertEqual(self.dossier.read_text(), "a file")
+
+    def test_a_full_disk_leaves_whole_files_only(self):
+        limits = lambda: (signal.signal(signal.SIGXFSZ, signal.SIG_IGN),
+                          resource.setrlimit(resource.RLIMIT_FSIZE, (200, 200)))
+        said = self.fail_to_mesh("--no-isolate", preexec_fn=limits)
+        self.assertIn("[output_unwritable]", said.stderr)
+        self.assertEqual(self.files(), [])
+        limits = lambda: (signal.signal(signal.SIGXFSZ, signal.SIG_IGN),
+                          resource.setrlimit(resource.RLIMIT_FSIZE, (6000, 6000)))
+        self.fail_to_mesh("--no-isolate", preexec_fn=limits)
+        self.assertIn("summary.txt", self.kept())
+        self.assertNotIn("replay.bin", self.kept())
+        self.assertIn("replay.bin cannot be written", (self.dossier / "summary.txt").read_text())
+
+    def test_each_body_of_a_batch_has_its_own(self):
+        listed, out = self.folder / "list.txt", self.folder / "out"
+        listed.write_text("".join(f"{BODIES / name}\n" for name in ("crossed.brep", "box.step", "open.brep")))
+        self.expect(5, "batch", listed, "--out", out, "--dossier", self.dossier, "--", "--size", "D/5")
+        folders = self.kept()
+        self.assertEqual(len(folders), 2, folders)
+        for folder, name in zip(folders, ("crossed.brep", "open.brep")):
+            self.assertTrue(folder.endswith(name))
+            self.assertIn(name, (self.dossier / folder / "summary.txt").read_text())
+        self.assertEqual(self.kept(self.dossier / folders[0]), self.ALL)
+        self.expect(2, "batch", listed, "--out", out, "--", "--dossier", self.dossier)
 
 
 class Batch(CommandLineTest):

@@ -1,7 +1,7 @@
 // Writes the CAD files that the tests of the command line mesh: box.step, plate.step (a plate with a bore), ball.brep,
 // pricked.step (the box with a tiny blind bore), touching.brep and overlapping.brep (two boxes that touch or overlap
-// and share nothing, a third apart); and those that it must refuse: a plane and a half space without end, an open
-// shell, a body without size, a vertex.
+// and share nothing, a third apart), crossed.brep (a box with a hollow that sticks out of it, so that faces cross); and
+// those that it must refuse: a plane and a half space without end, an open shell, a body without size, a vertex.
 #include <BRepAlgoAPI_Cut.hxx>
 #include <BRepBuilderAPI_MakeFace.hxx>
 #include <BRepBuilderAPI_MakeVertex.hxx>
@@ -16,6 +16,7 @@
 #include <TopExp_Explorer.hxx>
 #include <TopoDS.hxx>
 #include <TopoDS_Shell.hxx>
+#include <TopoDS_Solid.hxx>
 #include <cstdio>
 #include <gp_Pln.hxx>
 #include <string>
@@ -64,6 +65,16 @@ TopoDS_Shape three_boxes(double second) {
   return boxes;
 }
 
+TopoDS_Shape crossed() {
+  TopoDS_Solid solid;
+  BRep_Builder builder;
+  builder.MakeSolid(solid);
+  const TopoDS_Shape hollow = BRepPrimAPI_MakeCylinder(gp_Ax2(gp_Pnt(5, 5, 4), gp_Dir(1, 0.2, 0.1)), 2, 7).Shape();
+  builder.Add(solid, TopExp_Explorer(BRepPrimAPI_MakeBox(10, 10, 10).Shape(), TopAbs_SHELL).Current());
+  builder.Add(solid, TopExp_Explorer(hollow, TopAbs_SHELL).Current().Reversed());
+  return solid;
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -80,6 +91,7 @@ int main(int argc, char** argv) {
                     write_step(BRepAlgoAPI_Cut(box, prick).Shape(), folder + "pricked.step") &&
                     write_brep(BRepPrimAPI_MakeSphere(5).Shape(), folder + "ball.brep") &&
                     write_brep(three_boxes(10), folder + "touching.brep") &&
-                    write_brep(three_boxes(7), folder + "overlapping.brep") && write_bad_bodies(folder);
+                    write_brep(three_boxes(7), folder + "overlapping.brep") &&
+                    write_brep(crossed(), folder + "crossed.brep") && write_bad_bodies(folder);
   return done ? 0 : 1;
 }

@@ -119,6 +119,21 @@ class Failures(unittest.TestCase):
         self.assertEqual(sum(map(len, error.cad_ids.values())), len(error.entities))
         self.assertEqual(error.report["errors"][0]["code"], "open_shell")
 
+    def test_a_dossier_of_what_fails_and_of_nothing_else(self):
+        with tempfile.TemporaryDirectory() as folder:
+            dossier = pathlib.Path(folder) / "why"
+            curvetet.mesh(BODIES / "box.step", dossier=dossier)
+            self.assertFalse(dossier.exists())
+            with self.assertRaises(curvetet.Error) as caught:
+                curvetet.mesh(BODIES / "crossed.brep", dossier=dossier)
+            self.assertEqual({path.name for path in dossier.iterdir()},
+                             {"summary.txt", "report.json", "faces.brep", "spot.vtu", "replay.bin"})
+            self.assertIn(caught.exception.message, (dossier / "summary.txt").read_text())
+            self.assertEqual(caught.exception.report["warnings"], [])
+            with self.assertRaises(curvetet.Error) as caught:
+                curvetet.mesh(BODIES / "crossed.brep", dossier=str(dossier / "summary.txt"))
+            self.assertIn("output_unwritable", caught.exception.report["warnings"][0])
+
     def test_files_that_are_none(self):
         for path, code in ((BODIES / "missing.step", "file_not_found"), (BODIES, "file_unreadable")):
             with self.assertRaises(curvetet.Error) as caught:
@@ -129,7 +144,7 @@ class Failures(unittest.TestCase):
     def test_options_of_the_wrong_kind(self):
         box = BODIES / "box.step"
         for wrong in ({"size": "large"}, {"threads": 1.5}, {"face_sizes": [1]}, {"size_callback": 3}, {"colour": 1},
-                      {"face_sizes": {1: "x"}}, {"threads": -(2**40)}):
+                      {"face_sizes": {1: "x"}}, {"dossier": 5}, {"threads": -(2**40)}):
             with self.assertRaises(TypeError, msg=str(wrong)):
                 curvetet.mesh(box, **wrong)
         for wrong in ({"overlaps": "perhaps"}, {"recovery": ""}):
