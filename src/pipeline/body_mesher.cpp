@@ -9,6 +9,7 @@
 
 #include "boundary/fill_holes.h"
 #include "boundary/simplicial.h"
+#include "boundary/vertex_fans.h"
 
 namespace curvetet {
 
@@ -110,6 +111,7 @@ class BodyMesher {
     if (!recovered.ok()) return recovered.error();
     if (!body.recovery.failures.empty()) return body.recovery.failures;
     if (const Failures shared = shared_edges(body); !shared.empty()) return shared;
+    if (const Failures broken = broken_fans(body); !broken.empty()) return broken;
 
     clock_.start("classification", 0.5, 0.55);
     body.classified = classify(*body.conjoint);
@@ -126,6 +128,18 @@ class BodyMesher {
       const Vec3 a = body.vertices.position(offence.a), b = body.vertices.position(offence.b);
       failures.push_back({{offence.face}, 0.5 * (a + b), 0.5 * distance(a, b), describe(offence, model_)});
     }
+    return failures;
+  }
+
+  /// Asked of the locked facets: that they are what the face meshes say is what is to be found out.
+  Failures broken_fans(const BodyMesh& body) const {
+    Failures failures;
+    const auto locked = locked_facets(*body.tets, model_.faces.size());
+    for (std::size_t f = 0; f < locked.size(); ++f)
+      for (const FanFault& fault : find_fan_faults(body.boundary.faces[FaceId(f)], locked[FaceId(f)])) {
+        const Vec3 p = body.vertices.position(fault.vertex);
+        failures.push_back({{FaceId(f)}, p, 0.5 * sizes_.at(p), describe(fault)});
+      }
     return failures;
   }
 
