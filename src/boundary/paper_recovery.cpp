@@ -9,8 +9,7 @@
 
 #include "boundary/boundary_mesh.h"
 #include "boundary/edge_recovery.h"
-#include "boundary/fill_holes.h"
-#include "boundary/reconnect.h"
+#include "boundary/facet_fallback.h"
 #include "boundary/simplicial.h"
 
 namespace curvetet {
@@ -65,23 +64,33 @@ class PaperRecovery {
     std::size_t best = 0;
     std::size_t parametric = 0;
     int waited = 0;
+    std::size_t refined = 0;  // facets that were missing before the last points
     for (;;) {
       if (context_.should_stop()) return context_.stop_error("second stage of face recovery");
       const Status edges = drain_edges();
       if (!edges.ok()) return edges.error();
       if (!out_.recovery.failures.empty()) return Done{};
+      if (options_.force_fallback && options_.force_fallback(face)) {
+        finish_by_facets(face);
+        return Done{};
+      }
       const MarchResult m = march_face(conjoint_, face);
       context_.log(LogLevel::debug, fmt::format("face {}: {} triangles, {} missing, {} edges stuck", face.value(),
                                                 m.total, m.missing.size(), m.stuck.size()));
       parametric = surface_triangles(mesh, face).size();
+      const std::size_t left = m.complete ? 0 : m.missing.size();
+      RungCounts& rung = out_.recovery.faces[face].ladder.refine;
+      rung.recovered += refined - std::min(left, refined);
       if (m.complete && (m.missing.empty() || take_over(mesh, face, m, out_.recovery.faces[face]))) break;
       waited = m.seeds > best ? 0 : waited + 1;
       best = std::max(best, m.seeds);
       const bool doubled = m.seeds == 0 && mesh.node_count() > 2 * first_nodes + 8;
       if (doubled || waited > kPatience || !remesh(face, m)) {
-        fall_back(face);
+        finish_by_facets(face);
         return Done{};
       }
+      rung.tried += m.missing.size();
+      refined = m.missing.size();
       ++out_.recovery.rounds;
     }
     lock(face, parametric);
@@ -174,34 +183,9 @@ class PaperRecovery {
     locked_[face] = true;
   }
 
-  // Facet by facet, by flips and then by filling; a face that needs it is counted.
-  void fall_back(FaceId face) {
-    FaceCertificate& certificate = out_.recovery.faces[face];
-    certificate.fallback = true;
-    ++out_.counts.fallback_faces;
-    certificate.reconnected += reconnect_face(conjoint_, face).recovered;
-    for (std::size_t recovered = 1; recovered > 0 && !context_.should_stop();) {
-      recovered = 0;
-      for (const bool with_points : {false, true}) {
-        const FillResult filled = fill_holes(conjoint_, face, with_points);
-        recovered += filled.recovered;
-        out_.recovery.volume_points += filled.points;
-      }
-      certificate.reconnected += recovered;
-    }
-    const std::vector<SurfaceTriangle> missing = missing_triangles(conjoint_, face);
-    if (missing.empty()) {
+  void finish_by_facets(FaceId face) {
+    if (fall_back(conjoint_, face, out_.recovery, context_))
       lock(face, surface_triangles(conjoint_.boundary().faces[face], face).size());
-      return;
-    }
-    RecoveryFailure failure;
-    failure.faces = {face};
-    failure.what = fmt::format("{} facets are not recovered, not even one by one", missing.size());
-    const SurfaceTriangle& t = missing.front();
-    for (VertexId v : t.vertices) failure.where = failure.where + (1.0 / 3) * conjoint_.vertices().position(v);
-    failure.size =
-        0.5 * distance(conjoint_.vertices().position(t.vertices[0]), conjoint_.vertices().position(t.vertices[1]));
-    out_.recovery.failures.push_back(failure);
   }
 
   Conjoint& conjoint_;

@@ -23,13 +23,17 @@ class BodyMesher {
 
   Result<BodyMesherResult> run() {
     BodyMesherResult result;
+    result.restarts.resize(model_.faces.size());
     for (result.rounds = 0;; ++result.rounds) {
       result.mesh = std::make_unique<BodyMesh>();
+      last_round_ = result.rounds == kOuterRounds;
       auto failures = attempt(*result.mesh);
       if (!failures.ok()) return failures.error();
+      count_recovered(result.restarts, result.failures, failures.value());
       result.failures = std::move(failures.value());
-      if (result.failures.empty() || result.rounds == kOuterRounds || hopeless(result.failures)) return result;
+      if (result.failures.empty() || last_round_ || hopeless(result.failures)) return result;
       for (const RecoveryFailure& f : result.failures) log(f);
+      for (FaceId f : named(result.failures)) ++result.restarts[f].tried;
       sizes_.add(sources(result.failures));
     }
   }
@@ -40,6 +44,18 @@ class BodyMesher {
   static bool hopeless(const Failures& failures) {
     return std::all_of(failures.begin(), failures.end(),
                        [](const RecoveryFailure& f) { return f.proved || f.size <= 0; });
+  }
+
+  static std::set<FaceId> named(const Failures& failures) {
+    std::set<FaceId> faces;
+    for (const RecoveryFailure& f : failures) faces.insert(f.faces.begin(), f.faces.end());
+    return faces;
+  }
+
+  static void count_recovered(IndexedVector<FaceId, RungCounts>& restarts, const Failures& before,
+                              const Failures& after) {
+    const std::set<FaceId> left = named(after);
+    for (FaceId f : named(before)) restarts[f].recovered += left.contains(f) ? 0 : 1;
   }
 
   void log(const RecoveryFailure& f) const {
@@ -93,7 +109,10 @@ class BodyMesher {
       body.paper = recovery.value().counts;
       return Done{};
     }
-    auto recovery = recover_faces(*body.conjoint, {settings_.floor}, context_);
+    FaceRecoveryOptions options;
+    options.floor = settings_.floor;
+    options.fallback = last_round_;  // before that, a smaller size is the better cure
+    auto recovery = recover_faces(*body.conjoint, options, context_);
     if (!recovery.ok()) return recovery.error();
     body.recovery = std::move(recovery.value());
     return Done{};
@@ -173,6 +192,7 @@ class BodyMesher {
   RecoveryMode mode_;
   StageClock& clock_;
   Context& context_;
+  bool last_round_ = false;  ///< of the outer loop
 };
 
 }  // namespace

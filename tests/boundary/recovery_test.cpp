@@ -60,6 +60,13 @@ void expect_recovered(const Model& model, const BoundaryRun& run) {
     EXPECT_EQ(locked[FaceId(f)], run.recovery.faces[FaceId(f)].locked) << "face " << f;
 }
 
+void expect_no_fallback(const FaceRecoveryResult& recovery) {
+  for (const FaceCertificate& c : recovery.faces) {
+    EXPECT_FALSE(c.fallback);
+    EXPECT_EQ(c.ladder.fallback.tried, 0U);
+  }
+}
+
 TEST_P(Recovery, DefaultModeLocksEveryFaceAndTellsTheSolidsApart) {
   const Model model = GetParam().make();
   const auto run = run_boundary(model, {GetParam().size, GetParam().curvature});
@@ -77,7 +84,7 @@ TEST_P(PaperRecovery, LocksEveryFaceAndTellsTheSolidsApart) {
   const auto run = run_boundary(model, options);
   ASSERT_FALSE(HasFailure());
   expect_recovered(model, *run);
-  EXPECT_EQ(run->paper.fallback_faces, 0u);
+  expect_no_fallback(run->recovery);
 }
 
 INSTANTIATE_TEST_SUITE_P(Bodies, Recovery, testing::ValuesIn(cases()),
@@ -138,7 +145,7 @@ TEST(PaperCounts, RemeshingCaseOneStartsFromNothing) {
   for (const RecoveryFailure& f : recovered.value().recovery.failures)
     ADD_FAILURE() << f.what << ", face " << f.faces.front().value();
   EXPECT_GT(recovered.value().counts.case1, 0u);
-  EXPECT_EQ(recovered.value().counts.fallback_faces, 0u);
+  expect_no_fallback(recovered.value().recovery);
 }
 
 /// Flips edges of the first face at random until t_3d is no surface over its vertices any more; false if that does not
