@@ -31,6 +31,8 @@ struct FaceCertificate {
 
 struct FaceRecoveryOptions {
   double floor = 0;
+  /// Each refines all that is missing of t_3d, which is free of crossings; where that many do not help a smaller size
+  /// is the better cure. Points are bounded by the floor.
   int rounds = 30;
   bool fallback = false;  ///< facet by facet what the rounds leave; the paper's mode does so whatever this says
   std::function<bool(FaceId)> force_fallback = nullptr;  ///< faces recovered by nothing else, for tests; empty: none

@@ -1,11 +1,12 @@
 // Faces one by one, in the order of the body; a face is locked when its march is complete and never touched again. A
-// curve whose other face is locked already is not split any more. Where an iteration marks no more than the best one
-// before for several rounds, the face falls back to recovery facet by facet (section 3.5, rule 2).
+// curve whose other face is locked already is not split any more. Where several iterations are no better than the
+// best one before, the face falls back to recovery facet by facet (section 3.5, rule 2).
 #include "boundary/paper_recovery.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <limits>
 
 #include "boundary/boundary_mesh.h"
 #include "boundary/edge_recovery.h"
@@ -16,7 +17,8 @@ namespace curvetet {
 
 namespace {
 
-constexpr int kPatience = 12;  // iterations without a better march before the fallback
+/// Iterations without a better march before the fallback.
+constexpr int kPatience = 12;
 
 class PaperRecovery {
  public:
@@ -58,10 +60,23 @@ class PaperRecovery {
     return Done{};
   }
 
+  struct Fewest {
+    std::size_t stuck = std::numeric_limits<std::size_t>::max(), missing = stuck;
+  };
+
+  /// Fewer edges without a neighbour, or fewer triangles missing, than ever before. The number of triangles that are
+  /// there says nothing: points make more of them wherever they fall, up to the floor of spacing.
+  static bool is_better(const MarchResult& m, Fewest& fewest) {
+    const bool better = m.missing.size() < fewest.missing || (m.seeds > 0 && m.stuck.size() < fewest.stuck);
+    fewest.missing = std::min(fewest.missing, m.missing.size());
+    if (m.seeds > 0) fewest.stuck = std::min(fewest.stuck, m.stuck.size());
+    return better;
+  }
+
   Status recover(FaceId face) {
     FaceMesh& mesh = conjoint_.boundary().faces[face];
     const std::size_t first_nodes = mesh.node_count();
-    std::size_t best = 0;
+    Fewest fewest;
     std::size_t parametric = 0;
     int waited = 0;
     std::size_t refined = 0;  // facets that were missing before the last points
@@ -82,8 +97,7 @@ class PaperRecovery {
       RungCounts& rung = out_.recovery.faces[face].ladder.refine;
       rung.recovered += refined - std::min(left, refined);
       if (m.complete && (m.missing.empty() || take_over(mesh, face, m, out_.recovery.faces[face]))) break;
-      waited = m.seeds > best ? 0 : waited + 1;
-      best = std::max(best, m.seeds);
+      waited = is_better(m, fewest) ? 0 : waited + 1;
       const bool doubled = m.seeds == 0 && mesh.node_count() > 2 * first_nodes + 8;
       if (doubled || waited > kPatience || !remesh(face, m)) {
         finish_by_facets(face);
