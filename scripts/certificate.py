@@ -5,7 +5,8 @@ For every mesh that was made:
   - the hash of each face's facets when they were locked equals that at the end (unless relocks are counted);
   - the facets of all faces together are the mesh's boundary triangles;
   - T_Γ has as many facets as the t_3d whose place it took, and no more of them coincide than there are;
-  - no face fell back to recovery facet by facet (a run with --recovery paper may: --allow-fallback);
+  - no face fell back to recovery facet by facet, which no valid body should need (a run with --recovery paper may:
+    --allow-fallback);
   - the points that a stage added to the whole body and to its faces agree: both none, or no face has more than the body.
 Runs that made no mesh have no certificate; they are listed with their error. Exit code 1 if a certificate is broken, or
 if there is none at all.

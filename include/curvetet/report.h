@@ -16,6 +16,22 @@ struct StageTime {
   std::size_t bytes = 0;  ///< of our own arrays at the end of the stage
 };
 
+/// A rung of the ladder for what the march leaves: the facets it was tried on, again in each round that it was, and
+/// those it recovered.
+struct RungCounts {
+  std::size_t tried = 0, recovered = 0;
+};
+
+/// The rungs in their order. The outer loop's are of restarts, not of facets: those that a face was named for, and
+/// those after which it was not named again.
+struct LadderCounts {
+  RungCounts reconnect;      ///< by flips and filling, without points
+  RungCounts refine;         ///< by points on the surface; recovered: how many fewer the next march missed
+  RungCounts volume_points;  ///< by filling with points in the volume
+  RungCounts outer_loop;     ///< by a smaller size
+  RungCounts fallback;       ///< facet by facet, as a last resort
+};
+
 /// Certificate of one CAD face.
 struct FaceReport {
   std::uint32_t cad_id = 0;
@@ -29,6 +45,7 @@ struct FaceReport {
   std::uint64_t hash_locked = 0, hash_final = 0;
   std::size_t relocks = 0, unlocks = 0, flips_without_points = 0;
   bool fallback = false;
+  LadderCounts ladder;
 };
 
 struct SolidReport {
@@ -66,7 +83,8 @@ struct ForcedAngleReport {
   Point where{};
 };
 
-/// Counts of recovery as a whole; those of the paper's remeshing cases are of `--recovery paper` only.
+/// Counts of recovery as a whole, of the last round of the outer loop, also where that failed; those of the paper's
+/// remeshing cases are of `--recovery paper` only.
 struct RecoveryCounts {
   std::size_t crossings = 0;  ///< pairs of triangles of the first t_3d that crossed
   std::size_t edge_flips = 0, edge_splits = 0, edges_filled = 0;
@@ -74,6 +92,7 @@ struct RecoveryCounts {
   int rounds = 0;
   std::size_t stage_one_points = 0, stage_one_allowed = 0, stage_two_points = 0;
   std::size_t case1 = 0, case2 = 0, case3a = 0, case3b = 0, case4 = 0, fallback_faces = 0;
+  LadderCounts ladder;  ///< of all faces together
 };
 
 struct Report {

@@ -7,7 +7,9 @@
 #include <set>
 #include <tuple>
 
+#include "boundary/face_recovery.h"
 #include "boundary/simplicial.h"
+#include "boundary/vertex_fans.h"
 
 namespace curvetet {
 
@@ -157,6 +159,9 @@ std::vector<std::string> check_boundary(const Model& model, const BoundaryMesh& 
   for (const Offence& offence : find_offences(model, mesh)) faults.push_back(describe(offence, model));
   for (std::size_t s = 0; s < model.solids.size(); ++s) check_solid(model, mesh, vertices, SolidId(s), faults);
   check_places(model, mesh, vertices, faults);
+  for (std::size_t f = 0; f < model.faces.size(); ++f)
+    for (const FanFault& fault : find_fan_faults(mesh.faces[FaceId(f)], facets_of(mesh.faces[FaceId(f)], FaceId(f))))
+      faults.push_back("face " + std::to_string(model.faces[FaceId(f)].label.cad_id) + ": " + describe(fault));
   return faults;
 }
 

@@ -20,6 +20,7 @@ namespace curvetet {
 /// 6. No two vertices on the boundary of one solid are at one place. (Solids that touch without sharing entities are no
 /// fault of
 ///    these meshes.)
+/// 7. Around each vertex of a face its triangles are the fans that the face has there (vertex_fans.h).
 std::vector<std::string> check_boundary(const Model& model, const BoundaryMesh& mesh, const VertexStore& vertices);
 
 }  // namespace curvetet

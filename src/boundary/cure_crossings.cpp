@@ -12,7 +12,6 @@ namespace curvetet {
 
 namespace {
 
-// A cure takes a few points per crossing; many more mean that refinement does not separate what crosses.
 constexpr std::size_t kPointsPerPair = 8;
 // More crossings than this are no thin wall but a surface mesh gone wrong.
 constexpr std::size_t kPairsPerTriangle = 4;
@@ -37,14 +36,14 @@ class CrossingCure {
       const auto pairs = crossing_pairs(conjoint_.vertices(), triangles_, kPairsPerTriangle * triangles_.size());
       if (result_.rounds == 0) {
         result_.first_pairs = pairs.size();
-        budget_ = kPointsPerPair * pairs.size() + triangles_.size();
+        budget_ = budget_for(pairs);
       }
       context_.log(LogLevel::debug, fmt::format("crossings, round {}: {} pairs of {} triangles", result_.rounds,
                                                 pairs.size(), triangles_.size()));
       const std::vector<std::uint32_t> folds = find_folds();
       if (result_.rounds == 0) result_.first_folds = folds.size();
       if (pairs.empty() && folds.empty()) return result_;
-      const bool hopeless = result_.rounds == options_.rounds || result_.points > budget_ ||
+      const bool hopeless = result_.rounds == options_.rounds || static_cast<double>(result_.points) > budget_ ||
                             pairs.size() >= kPairsPerTriangle * triangles_.size();
       const bool progress = !hopeless && (refine(pairs) | unfold(folds));
       if (!progress) {
@@ -57,6 +56,20 @@ class CrossingCure {
   }
 
  private:
+  /// A legal cure of a thin wall may need many times the points of the first mesh: as many as triangles of the floor's
+  /// spacing cover what crosses. Slivers have no area, so that some points per pair and triangle are granted, too.
+  double budget_for(const std::vector<std::pair<std::uint32_t, std::uint32_t>>& pairs) const {
+    std::set<std::uint32_t> crossing;
+    for (const auto& [i, j] : pairs) crossing.insert({i, j});
+    double area = 0;
+    for (std::uint32_t i : crossing) {
+      const auto at = [&](std::size_t k) { return conjoint_.vertices().position(triangles_[i].vertices[k]); };
+      area += 0.5 * norm(cross(at(1) - at(0), at(2) - at(0)));
+    }
+    return area / (options_.floor * options_.floor) +
+           static_cast<double>(kPointsPerPair * pairs.size() + triangles_.size());
+  }
+
   bool still_there(const SurfaceTriangle& t) const {
     const FaceMesh& mesh = conjoint_.boundary().faces[t.face];
     return mesh.triangle(t.triangle).alive() && mesh.vertices(t.triangle) == t.vertices;
@@ -159,7 +172,7 @@ class CrossingCure {
   Context& context_;
   SurfaceRefinement refinement_;
   CrossingResult result_;
-  std::size_t budget_ = 0;
+  double budget_ = 0;
   std::vector<SurfaceTriangle> triangles_;
   std::set<std::pair<FaceId, FaceId>> reported_;
 };

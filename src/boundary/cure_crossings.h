@@ -3,7 +3,7 @@
 //
 // Before: valid face meshes. After (complete): no two triangles of t_3d cross, exactly, and none is folded back against
 // the normal of its face. Terminates: each round splits at least one triangle or segment, none below the floor, and the
-// rounds are bounded.
+// rounds are bounded, and the points by the area that crosses over the square of the floor.
 #pragma once
 
 #include <string>
@@ -26,7 +26,7 @@ struct RecoveryFailure {
 
 struct CrossingOptions {
   double floor = 0;
-  int rounds = 40;
+  int rounds = 40;  ///< shells of a ten-thousandth of their radius, as coarse as can be, took thirty
 };
 struct CrossingResult {
   std::size_t first_pairs = 0;  ///< crossings of the initial meshes

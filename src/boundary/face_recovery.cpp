@@ -11,6 +11,7 @@
 #include <algorithm>
 
 #include "boundary/edge_recovery.h"
+#include "boundary/facet_fallback.h"
 #include "boundary/fill_holes.h"
 #include "boundary/reconnect.h"
 
@@ -25,7 +26,8 @@ class FaceRecovery {
         tets_(*conjoint.tets()),
         options_(options),
         context_(context),
-        recovered_(conjoint.model().faces.size(), false) {
+        recovered_(conjoint.model().faces.size(), false),
+        refined_(conjoint.model().faces.size(), 0) {
     result_.faces.resize(conjoint.model().faces.size());
   }
 
@@ -33,22 +35,26 @@ class FaceRecovery {
     for (result_.rounds = 0;; ++result_.rounds) {
       const Status edges = drain_edges();
       if (!edges.ok()) return edges.error();
-      if (!result_.failures.empty()) break;
+      if (!result_.failures.empty()) return std::move(result_);
       const Status pass = march_all();
       if (!pass.ok()) return pass.error();
       reconnect_all();
-      if (all_recovered()) break;
-      if (result_.rounds >= options_.rounds || !refine_missing()) {
-        report_missing();
-        break;
-      }
+      if (none_open() || result_.rounds >= options_.rounds || !refine_missing()) break;
     }
+    const Status rest = end();
+    if (!rest.ok()) return rest.error();
     return std::move(result_);
   }
 
  private:
-  bool all_recovered() const {
-    return std::all_of(recovered_.begin(), recovered_.end(), [](bool r) { return r; });
+  bool is_forced(FaceId face) const { return options_.force_fallback && options_.force_fallback(face); }
+  /// Whether the rounds have something to do on it.
+  bool is_open(FaceId face) const { return !recovered_[face] && !is_forced(face); }
+
+  bool none_open() const {
+    for (std::size_t f = 0; f < recovered_.size(); ++f)
+      if (is_open(FaceId(f))) return false;
+    return true;
   }
 
   Status drain_edges() {
@@ -84,6 +90,7 @@ class FaceRecovery {
       tets_.lock(*f, face);
     }
     recovered_[face] = true;
+    refined_[face] = 0;
     FaceCertificate& certificate = result_.faces[face];
     certificate.locked = facets_of(conjoint_.boundary().faces[face], face);
     certificate.parametric = parametric;
@@ -94,7 +101,7 @@ class FaceRecovery {
     for (std::size_t f = 0; f < recovered_.size(); ++f) {
       const FaceId face(f);
       if (context_.should_stop()) return context_.stop_error("face recovery");
-      if (!recovered_[face]) march(face);
+      if (is_open(face)) march(face);
       done += recovered_[face] ? 1U : 0U;
       context_.advance(static_cast<double>(done) / static_cast<double>(recovered_.size()));
     }
@@ -108,17 +115,29 @@ class FaceRecovery {
     FaceMesh& mesh = conjoint_.boundary().faces[face];
     const std::size_t parametric = surface_triangles(mesh, face).size();
     const bool taken = m.missing.empty() || take_over(mesh, face, m, result_.faces[face]);
+    count_refined(face);
     if (m.complete && taken) lock(face, parametric);
   }
+
+  void count_refined(FaceId face) {
+    if (refined_[face] == 0) return;
+    const std::size_t left = missing_triangles(conjoint_, face).size();
+    result_.faces[face].ladder.refine.recovered += refined_[face] - std::min(left, refined_[face]);
+    refined_[face] = 0;
+  }
+
+  void lock_as_is(FaceId face) { lock(face, surface_triangles(conjoint_.boundary().faces[face], face).size()); }
 
   /// What flips do not reach is left to filling, which looks at a hole as a whole.
   void reconnect_all() {
     for (std::size_t f = 0; f < recovered_.size(); ++f) {
       const FaceId face(f);
-      if (recovered_[face] || context_.should_stop()) continue;
+      if (!is_open(face) || context_.should_stop()) continue;
       const ReconnectResult r = reconnect_face(conjoint_, face);
-      result_.faces[face].reconnected += r.recovered;
-      if (r.missing.empty()) lock(face, surface_triangles(conjoint_.boundary().faces[face], face).size());
+      RungCounts& rung = result_.faces[face].ladder.reconnect;
+      rung.tried += r.recovered + r.missing.size();
+      rung.recovered += r.recovered;
+      if (r.missing.empty()) lock_as_is(face);
     }
     fill_missing(false);
   }
@@ -140,13 +159,16 @@ class FaceRecovery {
     std::size_t recovered = 0;
     for (std::size_t f = 0; f < recovered_.size(); ++f) {
       const FaceId face(f);
-      if (recovered_[face] || context_.should_stop()) continue;
+      if (!is_open(face) || context_.should_stop()) continue;
+      const std::size_t before = missing_triangles(conjoint_, face).size();
       const FillResult filled = fill_holes(conjoint_, face, with_points);
-      result_.faces[face].reconnected += filled.recovered;
+      const std::size_t after = missing_triangles(conjoint_, face).size();
+      LadderCounts& ladder = result_.faces[face].ladder;
+      (with_points ? ladder.volume_points : ladder.reconnect).recovered += before - after;
+      if (with_points) ladder.volume_points.tried += before;
       result_.volume_points += filled.points;
       recovered += filled.recovered;
-      if (missing_triangles(conjoint_, face).empty())
-        lock(face, surface_triangles(conjoint_.boundary().faces[face], face).size());
+      if (after == 0) lock_as_is(face);
     }
     return recovered;
   }
@@ -159,8 +181,11 @@ class FaceRecovery {
     std::size_t inserted = 0;
     for (std::size_t f = 0; f < recovered_.size(); ++f) {
       const FaceId face(f);
-      if (recovered_[face]) continue;
-      for (const SurfaceTriangle& t : missing_triangles(conjoint_, face)) {
+      if (!is_open(face)) continue;
+      const std::vector<SurfaceTriangle> missing = missing_triangles(conjoint_, face);
+      refined_[face] = missing.size();
+      result_.faces[face].ladder.refine.tried += missing.size();
+      for (const SurfaceTriangle& t : missing) {
         const FaceMesh& mesh = conjoint_.boundary().faces[face];
         if (!mesh.triangle(t.triangle).alive() || mesh.vertices(t.triangle) != t.vertices) continue;
         if (refine_triangle(conjoint_, face, t.triangle, refinement).ok()) ++inserted;
@@ -169,22 +194,31 @@ class FaceRecovery {
     return inserted;
   }
 
-  void report_missing() {
+  /// What the rounds left. Complete faces, which were unlocked only to make room for others, are locked first, so that
+  /// the fallback sees them.
+  Status end() {
+    for (std::size_t f = 0; f < recovered_.size(); ++f)
+      if (is_open(FaceId(f)) && missing_triangles(conjoint_, FaceId(f)).empty()) lock_as_is(FaceId(f));
     for (std::size_t f = 0; f < recovered_.size(); ++f) {
       const FaceId face(f);
       if (recovered_[face]) continue;
-      const auto missing = missing_triangles(conjoint_, face);
-      if (missing.empty()) {  // unlocked only to make room for others
-        lock(face, surface_triangles(conjoint_.boundary().faces[face], face).size());
-        continue;
-      }
-      RecoveryFailure failure;
-      failure.faces = {face};
-      failure.what = fmt::format("{} of {} facets of the face are not recovered", missing.size(),
-                                 conjoint_.boundary().faces[face].triangle_count());
-      locate_failure(missing.front(), failure);
-      result_.failures.push_back(failure);
+      if (context_.should_stop()) return context_.stop_error("face recovery");
+      if (!options_.fallback && !is_forced(face))
+        report_missing(face);
+      else if (fall_back(conjoint_, face, result_, context_))
+        lock_as_is(face);
     }
+    return Done{};
+  }
+
+  void report_missing(FaceId face) {
+    const auto missing = missing_triangles(conjoint_, face);
+    RecoveryFailure failure;
+    failure.faces = {face};
+    failure.what = fmt::format("{} of {} facets of the face are not recovered", missing.size(),
+                               conjoint_.boundary().faces[face].triangle_count());
+    locate_failure(missing.front(), failure);
+    result_.failures.push_back(failure);
   }
 
   void locate_failure(const SurfaceTriangle& t, RecoveryFailure& failure) const {
@@ -203,6 +237,7 @@ class FaceRecovery {
   Context& context_;
   FaceRecoveryResult result_;
   IndexedVector<FaceId, char> recovered_;
+  IndexedVector<FaceId, std::size_t> refined_;  ///< facets that were missing when the face was refined last
 };
 
 }  // namespace

@@ -8,12 +8,14 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <set>
 #include <vector>
 
 #include "base/context.h"
 #include "boundary/cure_crossings.h"
 #include "boundary/march.h"
+#include "curvetet/report.h"
 
 namespace curvetet {
 
@@ -22,14 +24,18 @@ struct FaceCertificate {
   std::set<FacetKey> marched;    ///< facets that the march put in the place of triangles of t_3d
   std::vector<FacetKey> locked;  ///< T_Γ when it was locked last, sorted
   std::size_t parametric = 0;    ///< triangles of t_3d whose place T_Γ took then
-  std::size_t reconnected = 0;   ///< facets recovered by flips and filling, without points on the surface
   std::size_t unlocks = 0;
   bool fallback = false;
+  LadderCounts ladder;  ///< but for the outer loop's
 };
 
 struct FaceRecoveryOptions {
   double floor = 0;
+  /// Each refines all that is missing of t_3d, which is free of crossings; where that many do not help a smaller size
+  /// is the better cure. Points are bounded by the floor.
   int rounds = 30;
+  bool fallback = false;  ///< facet by facet what the rounds leave; the paper's mode does so whatever this says
+  std::function<bool(FaceId)> force_fallback = nullptr;  ///< faces recovered by nothing else, for tests; empty: none
 };
 
 struct FaceRecoveryResult {

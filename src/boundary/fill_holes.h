@@ -1,4 +1,4 @@
-// The last rung of the ladder for a stuck hole: the tetrahedralization around it is made anew (spatial/refill.h), if
+// What flips do not reach: the tetrahedralization around it is made anew (spatial/refill.h), if
 // allowed with points in the volume. None is ever put on a facet, where it would lie off the surface.
 #pragma once
 

@@ -1,23 +1,24 @@
 // Faces one by one, in the order of the body; a face is locked when its march is complete and never touched again. A
-// curve whose other face is locked already is not split any more. Where an iteration marks no more than the best one
-// before for several rounds, the face falls back to recovery facet by facet (section 3.5, rule 2).
+// curve whose other face is locked already is not split any more. Where several iterations are no better than the
+// best one before, the face falls back to recovery facet by facet (section 3.5, rule 2).
 #include "boundary/paper_recovery.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <limits>
 
 #include "boundary/boundary_mesh.h"
 #include "boundary/edge_recovery.h"
-#include "boundary/fill_holes.h"
-#include "boundary/reconnect.h"
+#include "boundary/facet_fallback.h"
 #include "boundary/simplicial.h"
 
 namespace curvetet {
 
 namespace {
 
-constexpr int kPatience = 12;  // iterations without a better march before the fallback
+/// Iterations without a better march before the fallback.
+constexpr int kPatience = 12;
 
 class PaperRecovery {
  public:
@@ -59,29 +60,51 @@ class PaperRecovery {
     return Done{};
   }
 
+  struct Fewest {
+    std::size_t stuck = std::numeric_limits<std::size_t>::max(), missing = stuck;
+  };
+
+  /// Fewer edges without a neighbour, or fewer triangles missing, than ever before. The number of triangles that are
+  /// there says nothing: points make more of them wherever they fall, up to the floor of spacing.
+  static bool is_better(const MarchResult& m, Fewest& fewest) {
+    const bool better = m.missing.size() < fewest.missing || (m.seeds > 0 && m.stuck.size() < fewest.stuck);
+    fewest.missing = std::min(fewest.missing, m.missing.size());
+    if (m.seeds > 0) fewest.stuck = std::min(fewest.stuck, m.stuck.size());
+    return better;
+  }
+
   Status recover(FaceId face) {
     FaceMesh& mesh = conjoint_.boundary().faces[face];
     const std::size_t first_nodes = mesh.node_count();
-    std::size_t best = 0;
+    Fewest fewest;
     std::size_t parametric = 0;
     int waited = 0;
+    std::size_t refined = 0;  // facets that were missing before the last points
     for (;;) {
       if (context_.should_stop()) return context_.stop_error("second stage of face recovery");
       const Status edges = drain_edges();
       if (!edges.ok()) return edges.error();
       if (!out_.recovery.failures.empty()) return Done{};
+      if (options_.force_fallback && options_.force_fallback(face)) {
+        finish_by_facets(face);
+        return Done{};
+      }
       const MarchResult m = march_face(conjoint_, face);
       context_.log(LogLevel::debug, fmt::format("face {}: {} triangles, {} missing, {} edges stuck", face.value(),
                                                 m.total, m.missing.size(), m.stuck.size()));
       parametric = surface_triangles(mesh, face).size();
+      const std::size_t left = m.complete ? 0 : m.missing.size();
+      RungCounts& rung = out_.recovery.faces[face].ladder.refine;
+      rung.recovered += refined - std::min(left, refined);
       if (m.complete && (m.missing.empty() || take_over(mesh, face, m, out_.recovery.faces[face]))) break;
-      waited = m.seeds > best ? 0 : waited + 1;
-      best = std::max(best, m.seeds);
+      waited = is_better(m, fewest) ? 0 : waited + 1;
       const bool doubled = m.seeds == 0 && mesh.node_count() > 2 * first_nodes + 8;
       if (doubled || waited > kPatience || !remesh(face, m)) {
-        fall_back(face);
+        finish_by_facets(face);
         return Done{};
       }
+      rung.tried += m.missing.size();
+      refined = m.missing.size();
       ++out_.recovery.rounds;
     }
     lock(face, parametric);
@@ -174,34 +197,9 @@ class PaperRecovery {
     locked_[face] = true;
   }
 
-  // Facet by facet, by flips and then by filling; a face that needs it is counted.
-  void fall_back(FaceId face) {
-    FaceCertificate& certificate = out_.recovery.faces[face];
-    certificate.fallback = true;
-    ++out_.counts.fallback_faces;
-    certificate.reconnected += reconnect_face(conjoint_, face).recovered;
-    for (std::size_t recovered = 1; recovered > 0 && !context_.should_stop();) {
-      recovered = 0;
-      for (const bool with_points : {false, true}) {
-        const FillResult filled = fill_holes(conjoint_, face, with_points);
-        recovered += filled.recovered;
-        out_.recovery.volume_points += filled.points;
-      }
-      certificate.reconnected += recovered;
-    }
-    const std::vector<SurfaceTriangle> missing = missing_triangles(conjoint_, face);
-    if (missing.empty()) {
+  void finish_by_facets(FaceId face) {
+    if (fall_back(conjoint_, face, out_.recovery, context_))
       lock(face, surface_triangles(conjoint_.boundary().faces[face], face).size());
-      return;
-    }
-    RecoveryFailure failure;
-    failure.faces = {face};
-    failure.what = fmt::format("{} facets are not recovered, not even one by one", missing.size());
-    const SurfaceTriangle& t = missing.front();
-    for (VertexId v : t.vertices) failure.where = failure.where + (1.0 / 3) * conjoint_.vertices().position(v);
-    failure.size =
-        0.5 * distance(conjoint_.vertices().position(t.vertices[0]), conjoint_.vertices().position(t.vertices[1]));
-    out_.recovery.failures.push_back(failure);
   }
 
   Conjoint& conjoint_;

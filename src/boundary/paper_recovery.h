@@ -12,7 +12,6 @@ namespace curvetet {
 struct PaperCounts {
   std::size_t stage_one_points = 0, stage_one_allowed = 0;
   std::size_t case1 = 0, case2 = 0, case3a = 0, case3b = 0, case4 = 0;
-  std::size_t fallback_faces = 0;
 };
 
 struct PaperRecoveryResult {

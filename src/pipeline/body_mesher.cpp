@@ -9,6 +9,7 @@
 
 #include "boundary/fill_holes.h"
 #include "boundary/simplicial.h"
+#include "boundary/vertex_fans.h"
 
 namespace curvetet {
 
@@ -23,14 +24,18 @@ class BodyMesher {
   Result<BodyMesherResult> run() {
     for (const std::vector<SizeSource>& asked : loop_.asked) sizes_.add(asked);
     BodyMesherResult result;
+    result.restarts.resize(model_.faces.size());
     while (true) {
       result.rounds = loop_.round();
       result.mesh = std::make_unique<BodyMesh>();
+      last_round_ = result.rounds == kOuterRounds;
       auto failures = attempt(*result.mesh);
       if (!failures.ok()) return failures.error();
+      count_recovered(result.restarts, result.failures, failures.value());
       result.failures = std::move(failures.value());
-      if (result.failures.empty() || result.rounds == kOuterRounds || hopeless(result.failures)) return result;
+      if (result.failures.empty() || last_round_ || hopeless(result.failures)) return result;
       for (const RecoveryFailure& f : result.failures) log(f);
+      for (FaceId f : named(result.failures)) ++result.restarts[f].tried;
       loop_.asked.push_back(sources(result.failures));
       sizes_.add(loop_.asked.back());
     }
@@ -42,6 +47,18 @@ class BodyMesher {
   static bool hopeless(const Failures& failures) {
     return std::all_of(failures.begin(), failures.end(),
                        [](const RecoveryFailure& f) { return f.proved || f.size <= 0; });
+  }
+
+  static std::set<FaceId> named(const Failures& failures) {
+    std::set<FaceId> faces;
+    for (const RecoveryFailure& f : failures) faces.insert(f.faces.begin(), f.faces.end());
+    return faces;
+  }
+
+  static void count_recovered(IndexedVector<FaceId, RungCounts>& restarts, const Failures& before,
+                              const Failures& after) {
+    const std::set<FaceId> left = named(after);
+    for (FaceId f : named(before)) restarts[f].recovered += left.contains(f) ? 0 : 1;
   }
 
   void log(const RecoveryFailure& f) const {
@@ -95,7 +112,10 @@ class BodyMesher {
       body.paper = recovery.value().counts;
       return Done{};
     }
-    auto recovery = recover_faces(*body.conjoint, {settings_.floor}, context_);
+    FaceRecoveryOptions options;
+    options.floor = settings_.floor;
+    options.fallback = last_round_;  // before that, a smaller size is the better cure
+    auto recovery = recover_faces(*body.conjoint, options, context_);
     if (!recovery.ok()) return recovery.error();
     body.recovery = std::move(recovery.value());
     return Done{};
@@ -113,6 +133,7 @@ class BodyMesher {
     if (!recovered.ok()) return recovered.error();
     if (!body.recovery.failures.empty()) return body.recovery.failures;
     if (const Failures shared = shared_edges(body); !shared.empty()) return shared;
+    if (const Failures broken = broken_fans(body); !broken.empty()) return broken;
 
     clock_.start("classification", 0.5, 0.55);
     body.classified = classify(*body.conjoint);
@@ -129,6 +150,18 @@ class BodyMesher {
       const Vec3 a = body.vertices.position(offence.a), b = body.vertices.position(offence.b);
       failures.push_back({{offence.face}, 0.5 * (a + b), 0.5 * distance(a, b), describe(offence, model_)});
     }
+    return failures;
+  }
+
+  /// Asked of the locked facets: that they are what the face meshes say is what is to be found out.
+  Failures broken_fans(const BodyMesh& body) const {
+    Failures failures;
+    const auto locked = locked_facets(*body.tets, model_.faces.size());
+    for (std::size_t f = 0; f < locked.size(); ++f)
+      for (const FanFault& fault : find_fan_faults(body.boundary.faces[FaceId(f)], locked[FaceId(f)])) {
+        const Vec3 p = body.vertices.position(fault.vertex);
+        failures.push_back({{FaceId(f)}, p, 0.5 * sizes_.at(p), describe(fault)});
+      }
     return failures;
   }
 
@@ -163,6 +196,7 @@ class BodyMesher {
   OuterLoop& loop_;
   StageClock& clock_;
   Context& context_;
+  bool last_round_ = false;  ///< of the outer loop
 };
 
 }  // namespace

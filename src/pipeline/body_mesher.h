@@ -41,8 +41,9 @@ struct OuterLoop {
 
 struct BodyMesherResult {
   std::unique_ptr<BodyMesh> mesh;
-  int rounds = 0;                         ///< of the outer loop that were needed beyond the first
-  std::vector<RecoveryFailure> failures;  ///< empty when complete
+  int rounds = 0;                              ///< of the outer loop that were needed beyond the first
+  std::vector<RecoveryFailure> failures;       ///< empty when complete
+  IndexedVector<FaceId, RungCounts> restarts;  ///< of the outer loop, for each face that a failure named
 };
 
 inline constexpr int kOuterRounds = 6;

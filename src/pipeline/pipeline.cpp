@@ -82,6 +82,7 @@ class BodyRun {
     body_ = std::move(body.value());
     report_reductions(report_, model_, settings_, sizes_);
     report_.rounds = std::max(report_.rounds, body_.rounds);
+    report_recovery(report_, body_);
     if (body_.failures.empty()) return Done{};
     for (const RecoveryFailure& f : body_.failures)
       report_.errors.push_back(to_error(f, model_, settings_, gap_between(model_, *body_.mesh, f, reach(f))));

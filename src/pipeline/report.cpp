@@ -24,6 +24,16 @@ Json stage_json(const StageTime& stage) {
   return {{"stage", stage.stage}, {"seconds", number(stage.seconds)}, {"bytes", stage.bytes}};
 }
 
+Json rung_json(const RungCounts& rung) { return {{"tried", rung.tried}, {"recovered", rung.recovered}}; }
+
+Json ladder_json(const LadderCounts& ladder) {
+  return {{"reconnect", rung_json(ladder.reconnect)},
+          {"refine", rung_json(ladder.refine)},
+          {"volume_points", rung_json(ladder.volume_points)},
+          {"outer_loop", rung_json(ladder.outer_loop)},
+          {"fallback", rung_json(ladder.fallback)}};
+}
+
 Json recovery_json(const RecoveryCounts& counts) {
   return {{"crossings", counts.crossings},
           {"edge_flips", counts.edge_flips},
@@ -39,7 +49,8 @@ Json recovery_json(const RecoveryCounts& counts) {
           {"case_3a", counts.case3a},
           {"case_3b", counts.case3b},
           {"case_4", counts.case4},
-          {"fallback_faces", counts.fallback_faces}};
+          {"fallback_faces", counts.fallback_faces},
+          {"ladder", ladder_json(counts.ladder)}};
 }
 
 Json reduction_json(const ReductionReport& reduction) {
@@ -75,7 +86,8 @@ Json face_json(const FaceReport& face) {
           {"relocks", face.relocks},
           {"unlocks", face.unlocks},
           {"flips_without_points", face.flips_without_points},
-          {"fallback", face.fallback}};
+          {"fallback", face.fallback},
+          {"ladder", ladder_json(face.ladder)}};
 }
 
 Json solid_json(const SolidReport& solid) {

@@ -113,9 +113,15 @@ FaceReport face_report(const Model& model, const BodyMesh& body, FaceId face, co
   r.hash_final = facet_hash(locked);
   r.relocks = (locked.size() - unchanged.size() + 1) / 2;
   r.unlocks = c.unlocks;
-  r.flips_without_points = c.reconnected;
+  r.flips_without_points = c.ladder.reconnect.recovered;
   r.fallback = c.fallback;
+  r.ladder = c.ladder;
   return r;
+}
+
+void add(RungCounts& sum, const RungCounts& more) {
+  sum.tried += more.tried;
+  sum.recovered += more.recovered;
 }
 
 ForcedAngleReport forced_report(const Mesh& mesh, const ForcedAngle& forced) {
@@ -147,10 +153,8 @@ void report_input(Report& report, const Model& model, const Settings& settings, 
   }
 }
 
-void report_body(Report& report, const Model& model, const Settings& settings, const BodyMesherResult& body,
-                 const IndexedVector<FaceId, std::vector<FacetKey>>& locked) {
+void report_recovery(Report& report, const BodyMesherResult& body) {
   const BodyMesh& mesh = *body.mesh;
-  report.initial_surface_points += mesh.initial_surface_points;
   RecoveryCounts& c = report.recovery;
   c.crossings += mesh.crossings.first_pairs;
   c.edge_flips += mesh.recovery.edge_flips;
@@ -166,9 +170,24 @@ void report_body(Report& report, const Model& model, const Settings& settings, c
   c.case3a += mesh.paper.case3a;
   c.case3b += mesh.paper.case3b;
   c.case4 += mesh.paper.case4;
-  c.fallback_faces += mesh.paper.fallback_faces;
-  for (std::size_t f = 0; f < model.faces.size(); ++f)
+  for (const RungCounts& r : body.restarts) add(c.ladder.outer_loop, r);
+  for (const FaceCertificate& f : mesh.recovery.faces) {
+    c.fallback_faces += f.fallback ? 1 : 0;
+    add(c.ladder.reconnect, f.ladder.reconnect);
+    add(c.ladder.refine, f.ladder.refine);
+    add(c.ladder.volume_points, f.ladder.volume_points);
+    add(c.ladder.fallback, f.ladder.fallback);
+  }
+}
+
+void report_body(Report& report, const Model& model, const Settings& settings, const BodyMesherResult& body,
+                 const IndexedVector<FaceId, std::vector<FacetKey>>& locked) {
+  const BodyMesh& mesh = *body.mesh;
+  report.initial_surface_points += mesh.initial_surface_points;
+  for (std::size_t f = 0; f < model.faces.size(); ++f) {
     report.faces.push_back(face_report(model, mesh, FaceId(f), locked[FaceId(f)]));
+    report.faces.back().ladder.outer_loop = body.restarts[FaceId(f)];
+  }
   const double scale = settings.unit_scale / model.frame.scale;
   for (std::size_t s = 0; s < model.solids.size(); ++s) {
     SolidReport r;

@@ -13,8 +13,10 @@ namespace curvetet {
 
 /// Healing notes, unit, options: everything known once the body is loaded.
 void report_input(Report& report, const Model& model, const Settings& settings, const Options& options);
-/// Certificates, solids, counts; those of a part of a body are added to what is there. `locked`: the locked facets of
-/// the finished mesh, by face.
+/// Counts of recovery, those of a part of a body added to what is there. Also of one that failed.
+void report_recovery(Report& report, const BodyMesherResult& body);
+/// Certificates, solids, counts of the surface; those of a part of a body are added to what is there. `locked`: the
+/// locked facets of the finished mesh, by face.
 void report_body(Report& report, const Model& model, const Settings& settings, const BodyMesherResult& body,
                  const IndexedVector<FaceId, std::vector<FacetKey>>& locked);
 /// Area of each face and the triangles that its size asks for; a face that has more without a reduction gets one with

@@ -1,4 +1,4 @@
-// The last rung alone, before any flip or split was tried: missing segments become edges, missing facets facets.
+// Filling alone, before any flip or split was tried: missing segments become edges, missing facets facets.
 #include "boundary/fill_holes.h"
 
 #include <gtest/gtest.h>

@@ -43,6 +43,20 @@ TEST(ReportJson, HashesKeepAllTheirBits) {
   EXPECT_EQ(json["faces"][0]["hash_locked"], "0000000000000001");
 }
 
+TEST(ReportJson, SaysWhatEachRungOfTheLadderDid) {
+  Report report;
+  report.faces.resize(1);
+  report.faces[0].ladder.volume_points = {5, 3};
+  report.recovery.ladder.outer_loop = {2, 1};
+  const auto json = nlohmann::ordered_json::parse(report.to_json());
+  EXPECT_EQ(json["faces"][0]["ladder"]["volume_points"]["tried"], 5);
+  EXPECT_EQ(json["faces"][0]["ladder"]["volume_points"]["recovered"], 3);
+  EXPECT_EQ(json["recovery"]["ladder"]["outer_loop"]["recovered"], 1);
+  std::vector<std::string> rungs;
+  for (const auto& [name, rung] : json["recovery"]["ladder"].items()) rungs.push_back(name);
+  EXPECT_EQ(rungs, (std::vector<std::string>{"reconnect", "refine", "volume_points", "outer_loop", "fallback"}));
+}
+
 TEST(ReportJson, ErrorsSayWhatWhereAndWhatToDo) {
   Report report;
   report.errors.push_back(

@@ -21,15 +21,14 @@ std::vector<VertexId> surface_vertices(const BoundaryRun& run) {
   return list;
 }
 
-void recover(const Model& model, BoundaryRun& run, bool as_paper, double floor, Context& context) {
-  (void)model;
+void recover(BoundaryRun& run, bool as_paper, const FaceRecoveryOptions& options, Context& context) {
   if (as_paper) {
-    auto r = recover_faces_as_paper(*run.conjoint, {floor}, context);
+    auto r = recover_faces_as_paper(*run.conjoint, options, context);
     ASSERT_TRUE(r.ok());
     run.recovery = std::move(r.value().recovery);
     run.paper = r.value().counts;
   } else {
-    auto r = recover_faces(*run.conjoint, {floor}, context);
+    auto r = recover_faces(*run.conjoint, options, context);
     ASSERT_TRUE(r.ok());
     run.recovery = std::move(r.value());
   }
@@ -63,7 +62,9 @@ void run_stages(const Model& model, const BoundaryRunOptions& options, BoundaryR
   ASSERT_TRUE(built.ok()) << built.error().message;
   run.conjoint->attach(run.tets.get());
   if (options.until == Until::tets) return;
-  recover(model, run, options.as_paper, floor, context);
+  FaceRecoveryOptions recovery = options.recovery;
+  recovery.floor = floor;
+  recover(run, options.as_paper, recovery, context);
   if (options.until == Until::recovery || !run.recovery.failures.empty()) return;
   run.classified = classify(*run.conjoint);
 }

@@ -32,6 +32,7 @@ struct BoundaryRunOptions {
   double curvature = 12;
   bool gaps = true;
   bool as_paper = false;
+  FaceRecoveryOptions recovery = {};  ///< but for the floor
   int threads = 1;
   Until until = Until::classification;
 };
