@@ -165,11 +165,16 @@ class Corpus:
         """Has the body of each row meshed at its size, and where that fails and it is asked, again in parts."""
         rows = [row for row in rows if row["size"]]
         self.mesh_batch(rows, [])
-        failed = [row for row in rows if row["cause"]]
-        if self.a.apart and failed:
-            for row in failed:
-                row["apart"], row["cause_together"] = True, row["cause"]
+        self.mesh_apart(rows)
+
+    def mesh_apart(self, rows):
+        """Meshes again in parts what failed together, if that is asked; the rows concerned."""
+        failed = [row for row in rows if self.a.apart and row["size"] and row["cause"] and not row.get("apart")]
+        for row in failed:
+            row["apart"], row["cause_together"] = True, row["cause"]
+        if failed:
             self.mesh_batch(failed, ["--conformal", "off"])
+        return failed
 
     def mesh_batch(self, rows, options):
         """One `curvetet batch`; the rows get what became of it. Meshes and reports are then in the output folder by the
@@ -362,16 +367,23 @@ def main():
     planned = [corpus.row(body, divisor) for body in read_list(arguments.list)
                for divisor in read_divisors(arguments.divide)]
     corpus.mesh_all(planned)
-    rows = []
-    with open(arguments.out / "results.jsonl", "w") as results, \
+    (arguments.out / "results.jsonl").unlink(missing_ok=True)
+    judge_all(corpus, planned, arguments)
+    if again := corpus.mesh_apart(planned):
+        print("\nagain, in parts:")
+        judge_all(corpus, again, arguments)
+    (arguments.out / "results.jsonl").write_text("".join(json.dumps(row) + "\n" for row in planned))
+    return 0 if summarize(planned, arguments.judge is not None) else 1
+
+
+def judge_all(corpus, rows, arguments):
+    """In the order of the list, each as soon as those before it are done."""
+    with open(arguments.out / "results.jsonl", "a") as results, \
             concurrent.futures.ThreadPoolExecutor(max_workers=arguments.jobs) as pool:
-        # In the order of the list, each as soon as those before it are done.
-        for row in pool.map(corpus.judge_row, planned):
-            rows.append(row)
+        for row in pool.map(corpus.judge_row, rows):
             results.write(json.dumps(row) + "\n")
             results.flush()
             print_row(row)
-    return 0 if summarize(rows, arguments.judge is not None) else 1
 
 
 if __name__ == "__main__":

@@ -1,6 +1,7 @@
 // Of two triangles that cross, the one farther from its face is refined: a flat facet on a flat face is never the
-// culprit. Rejected: emptying equatorial spheres of all foreign vertices (the paper's rule), which on a thin shell asks
-// for elements as small as the wall is thin though no triangle crosses another.
+// culprit. Two facets of one face that lie on it and cross all the same are thinned out instead. Rejected: emptying
+// equatorial spheres of all foreign vertices (the paper's rule), which on a thin shell asks for elements as small as the
+// wall is thin though no triangle crosses another.
 #include "boundary/cure_crossings.h"
 
 #include <fmt/format.h>
@@ -20,6 +21,8 @@ constexpr std::size_t kPairsPerTriangle = 4;
 // share of its longest edge.
 constexpr double kStraight = 0.9;
 constexpr double kFar = 0.05;
+
+constexpr double kOnFace = 0.1;  // distance of a facet that lies on its face, over its longest edge
 
 class CrossingCure {
  public:
@@ -45,7 +48,7 @@ class CrossingCure {
       if (pairs.empty() && folds.empty()) return result_;
       const bool hopeless = result_.rounds == options_.rounds || static_cast<double>(result_.points) > budget_ ||
                             pairs.size() >= kPairsPerTriangle * triangles_.size();
-      const bool progress = !hopeless && (refine(pairs) | unfold(folds));
+      const bool progress = !hopeless && (thin_out(pairs, folds) || (refine(pairs) | unfold(folds)));
       if (!progress) {
         for (const auto& [i, j] : pairs) report(i, j, "facets of the surface mesh cross");
         for (std::uint32_t i : folds) report(i, i, "a facet of the surface mesh is folded against its face");
@@ -73,6 +76,41 @@ class CrossingCure {
   bool still_there(const SurfaceTriangle& t) const {
     const FaceMesh& mesh = conjoint_.boundary().faces[t.face];
     return mesh.triangle(t.triangle).alive() && mesh.vertices(t.triangle) == t.vertices;
+  }
+
+  /// Takes out nodes where flat parts of a face overlap: facets that lie on their face already do so because its
+  /// parameters are sheared, and more points would only make more such facets.
+  bool thin_out(const std::vector<std::pair<std::uint32_t, std::uint32_t>>& pairs,
+                const std::vector<std::uint32_t>& folds) {
+    bool any = false;
+    for (const auto& [i, j] : pairs) {
+      const SurfaceTriangle &a = triangles_[i], &b = triangles_[j];
+      if (a.face != b.face || !still_there(a) || !still_there(b)) continue;
+      if (!lies_on_face(a) || !lies_on_face(b)) continue;
+      for (const SurfaceTriangle* t : {&a, &b}) any |= remove_nodes(*t);
+    }
+    for (const std::uint32_t i : folds) {
+      const SurfaceTriangle& t = triangles_[i];
+      if (still_there(t) && lies_on_face(t)) any |= remove_nodes(t);
+    }
+    return any;
+  }
+
+  bool lies_on_face(const SurfaceTriangle& t) const {
+    const auto foot = foot_of(conjoint_, t.face, conjoint_.boundary().faces[t.face].triangle(t.triangle).node);
+    return foot && foot->distance < kOnFace * longest_edge(conjoint_.vertices(), t.vertices);
+  }
+
+  /// Those of the first surface mesh, so that this ends.
+  bool remove_nodes(const SurfaceTriangle& t) {
+    FaceMesh& mesh = conjoint_.boundary().faces[t.face];
+    std::vector<TriangleId> changed;
+    bool any = false;
+    for (const VertexId v : t.vertices) {
+      if (conjoint_.vertices().origin(v) != Origin::face_mesh) continue;
+      for (const NodeId n : mesh.nodes_of(v)) any |= mesh.remove_node(n, conjoint_.criterion(t.face), changed);
+    }
+    return any;
   }
 
   bool refine(const std::vector<std::pair<std::uint32_t, std::uint32_t>>& pairs) {

@@ -1,6 +1,6 @@
 // A round: segments, then a march over every face that is not locked, then reconnection by flips and filling for the
-// faces the march left, then one vertex for each triangle that is still missing; where none may be put on the surface,
-// filling with points in the volume. A face is locked as soon as it is complete, so that what is recovered stays
+// faces the march left, then filling with points in the volume; where that recovers nothing, one vertex for each
+// triangle that is still missing. A face is locked as soon as it is complete, so that what is recovered stays
 // recovered; a curve that must be split unlocks the faces on it, which is counted.
 // Rejected: refining before reconnecting. It converges too, but to a mesh much finer than asked wherever faces meet at
 // small angles.
@@ -142,10 +142,11 @@ class FaceRecovery {
     fill_missing(false);
   }
 
+  /// Points in the volume come first: what they recover stays as coarse as it is.
   bool refine_missing() {
+    if (fill_missing(true) > 0) return true;
     std::size_t inserted = refine_pass();
     if (inserted == 0) {
-      if (fill_missing(true) > 0) return true;
       // The locks of other faces are in the way.
       for (std::size_t f = 0; f < recovered_.size(); ++f) unlock(FaceId(f));
       inserted = refine_pass();

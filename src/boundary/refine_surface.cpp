@@ -15,6 +15,9 @@ namespace curvetet {
 
 namespace {
 
+/// Cosine to the normal of a triangle that no flip nearby turns round again; one that leans less may be flipped.
+constexpr double kTurnedBack = -0.5;
+
 Vec2 chart_centroid(const FaceMesh& mesh, TriangleId t) {
   const FaceTriangle& triangle = mesh.triangle(t);
   Vec2 sum{};
@@ -89,7 +92,20 @@ class TriangleRefiner {
       if (distance(conjoint_.vertices().position(v), p) < 0.25 * options_.floor)
         return {ConjointRefusal::too_small, {}};
     if (const auto split = split_encroached(*at, p)) return *split;
+    if (would_fold(*at, on_grid, p)) return {ConjointRefusal::folded, {}};
     return conjoint_.insert_on_face(face_, on_grid, *at, options_.origin);
+  }
+
+  /// Would a new triangle at p turn its back on the surface? Where the parameters are sheared, the image of a point of
+  /// the triangle may lie far outside of the triangle's own.
+  bool would_fold(TriangleId at, Vec2 q, Vec3 p) const {
+    const Vec3 normal = conjoint_.model().faces[face_].surface->normal(mesh_.chart.to_uv(q));
+    const std::array<VertexId, 3> v = mesh_.vertices(at);
+    for (std::size_t k = 0; k < 3; ++k) {
+      const Vec3 a = conjoint_.vertices().position(v[k]), b = conjoint_.vertices().position(v[(k + 1) % 3]);
+      if (dot(normalized(cross(b - a, p - a)), normal) < kTurnedBack) return true;
+    }
+    return false;
   }
 
   EdgeId edge_of(std::int32_t use) const {
@@ -174,23 +190,28 @@ double facing(const Conjoint& conjoint, FaceId face, TriangleId triangle) {
   return facing(*conjoint.model().faces[face].surface, mesh.chart, at.q, at.p);
 }
 
-double facing_at_foot(const Conjoint& conjoint, FaceId face, const std::array<NodeId, 3>& nodes) {
+std::optional<SurfaceFoot> foot_of(const Conjoint& conjoint, FaceId face, const std::array<NodeId, 3>& nodes) {
   const FaceMesh& mesh = conjoint.boundary().faces[face];
   const Surface& surface = *conjoint.model().faces[face].surface;
   const auto [q, p] = places_of(conjoint, face, nodes);
   const Vec3 centroid = (1.0 / 3) * (p[0] + p[1] + p[2]);
-  double nearest = std::numeric_limits<double>::infinity();
-  std::optional<Vec2> foot;
+  std::optional<SurfaceFoot> foot;
   for (const Vec2 guess : {(1.0 / 3) * (q[0] + q[1] + q[2]), q[0], q[1], q[2]}) {
     const auto found = surface.project(centroid, mesh.chart.to_uv(guess));
-    const double away = found ? distance(surface.value(*found), centroid) : nearest;
-    if (!(away < nearest)) continue;
-    nearest = away;
-    foot = found;
+    if (!found) continue;
+    const double away = distance(surface.value(*found), centroid);
+    if (!foot || away < foot->distance) foot = SurfaceFoot{*found, away};
   }
   // Beyond its border the face's surface may turn back: the closest point of the face is on the border then.
-  const Vec2 uv = foot ? within_box(conjoint.model().faces[face], *foot) : Vec2{};
-  return foot ? dot(normalized(cross(p[1] - p[0], p[2] - p[0])), surface.normal(uv)) : 1;
+  if (foot) foot->uv = within_box(conjoint.model().faces[face], foot->uv);
+  return foot;
+}
+
+double facing_at_foot(const Conjoint& conjoint, FaceId face, const std::array<NodeId, 3>& nodes) {
+  const auto foot = foot_of(conjoint, face, nodes);
+  const std::array<Vec3, 3> p = places_of(conjoint, face, nodes).p;
+  const Surface& surface = *conjoint.model().faces[face].surface;
+  return foot ? dot(normalized(cross(p[1] - p[0], p[2] - p[0])), surface.normal(foot->uv)) : 1;
 }
 
 double segment_deviation(const Conjoint& conjoint, EdgeId edge, VertexId a, VertexId b) {

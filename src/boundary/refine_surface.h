@@ -2,6 +2,7 @@
 #pragma once
 
 #include <functional>
+#include <optional>
 
 #include "boundary/surface_triangles.h"
 #include "conjoint/conjoint.h"
@@ -33,8 +34,14 @@ double deviation(const Conjoint& conjoint, FaceId face, TriangleId triangle);
 double facing(const Conjoint& conjoint, FaceId face, TriangleId triangle);
 /// Cosine of the angle to the surface's normal, 84 degrees, from which a facet counts as folded.
 inline constexpr double kFolded = 0.1;
-/// Cosine of the angle between a triangle's normal and the surface's where that is nearest to its centroid, searched
-/// from the same place of the chart and from the corners, as the final check does; 1 if no such place is found.
+struct SurfaceFoot {
+  Vec2 uv;              ///< within the box of the face's domain
+  double distance = 0;  ///< from the surface beyond that box, too
+};
+/// Where the surface is nearest to a triangle's centroid, searched from the same place of the chart and from the
+/// corners, as the final check does; empty if no such place is found.
+std::optional<SurfaceFoot> foot_of(const Conjoint& conjoint, FaceId face, const std::array<NodeId, 3>& nodes);
+/// Cosine of the angle between a triangle's normal and the surface's at its foot; 1 without a foot.
 double facing_at_foot(const Conjoint& conjoint, FaceId face, const std::array<NodeId, 3>& nodes);
 /// Distance from the middle of a segment to the curve at the middle parameter.
 double segment_deviation(const Conjoint& conjoint, EdgeId edge, VertexId a, VertexId b);

@@ -172,12 +172,12 @@ Result<CadBody> read_isolated(const std::string& path, const std::string& helper
   if (folder.path().empty()) return Error{ErrorCode::output_unwritable, "cannot make a temporary folder"};
   const std::string out_path = folder.path() + "/shape.bin";
   const double allowed = options.isolate_time_limit;
-  ChildProgram child(helper,
-                     {helper, kHelperFlag, path, out_path, options.input_unit,
-                      std::to_string(options.isolate_memory_limit), std::to_string(allowed), word_of(options.joining),
-                      list_of(options.suspects), exact(options.min_feature.value), options.min_feature.unit,
-                      list_of(parts)},
-                     "/dev/null", {std::string(kHelperVariable) + "=1", end_with_parent_variable()});
+  ChildProgram child(
+      helper,
+      {helper, kHelperFlag, path, out_path, options.input_unit, std::to_string(options.isolate_memory_limit),
+       std::to_string(allowed), word_of(options.joining), list_of(options.suspects), exact(options.min_feature.value),
+       options.min_feature.unit, list_of(parts)},
+      "/dev/null", {std::string(kHelperVariable) + "=1", end_with_parent_variable()});
   if (!child.started()) return Error{ErrorCode::bad_option, "cannot start the helper program " + helper};
   const auto start = Clock::now();
   auto pause = std::chrono::milliseconds(1);

@@ -21,6 +21,8 @@ const char* name(ConjointRefusal refusal) {
       return "coincident";
     case ConjointRefusal::locked_cavity:
       return "locked_cavity";
+    case ConjointRefusal::folded:
+      return "folded";
     case ConjointRefusal::too_small:
       return "too_small";
     case ConjointRefusal::no_segment:

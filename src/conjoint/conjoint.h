@@ -23,6 +23,7 @@ enum class ConjointRefusal : std::uint8_t {
   curved_segment,  ///< the region between a chord and its arc would hold a node, or the arc leaves the face
   coincident,      ///< a vertex is already at this place in space
   locked_cavity,   ///< the tetrahedralization has no legal cavity (locks, kept segments)
+  folded,          ///< a triangle would turn its back on the surface
   too_small,       ///< the segment or triangle is at the floor of spacing
   no_segment,      ///< the segment is not part of the curve mesh (any more)
 };

@@ -31,7 +31,8 @@ enum class Origin : std::uint8_t {
   stage_two,
   ladder,
   steiner,
-  interior
+  interior,
+  surrounding  ///< a corner of the cube around the body, in no solid
 };
 
 /// Positions are working coordinates on the grid (geometry/frame.h). Ids are never reused.

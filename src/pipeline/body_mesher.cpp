@@ -9,6 +9,7 @@
 
 #include "boundary/fill_holes.h"
 #include "boundary/simplicial.h"
+#include "boundary/surround.h"
 #include "boundary/vertex_fans.h"
 
 namespace curvetet {
@@ -124,7 +125,10 @@ class BodyMesher {
   Result<Failures> tetrahedralize(BodyMesh& body) {
     clock_.start("tetrahedralization", 0.3, 0.35);
     body.tets = std::make_unique<Tetrahedralization>(body.vertices, context_.seed);
-    const Status built = body.tets->build(used_vertices(body), context_);
+    std::vector<VertexId> vertices = used_vertices(body);
+    const std::vector<VertexId> corners = add_surrounding(body.vertices);
+    vertices.insert(vertices.end(), corners.begin(), corners.end());
+    const Status built = body.tets->build(vertices, context_);
     if (!built.ok()) return built.error();
     body.conjoint->attach(body.tets.get());
 

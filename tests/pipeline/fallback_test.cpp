@@ -20,8 +20,6 @@ struct Case {
   double size;
 };
 
-/// Of flat faces on the convex hull only those that the tetrahedralization has as t_3d has them: facets of the hull
-/// cannot be flipped, so where four points on a circle are triangulated in two ways nothing but the march helps.
 std::vector<Case> cases() {
   return {
       {"box", [] { return make_box(2, 3, 4); }, 0.9},
@@ -33,6 +31,8 @@ std::vector<Case> cases() {
       {"ball", [] { return make_ball(3); }, 1},
       {"ball_coarse", [] { return make_ball(3); }, 6},
       {"cylinder", [] { return make_cylinder(2, 5); }, 0.8},
+      {"cylinder_coarse", [] { return make_cylinder(2, 5); }, 3},
+      {"frustum", [] { return make_cone(2, 1, 4); }, 1},
       {"cone", [] { return make_cone(2, 0, 4); }, 1},
       {"torus", [] { return make_torus(5, 1); }, 1},
       {"tube", [] { return make_tube(10, 9.5, 30); }, 5},

@@ -6,6 +6,7 @@
 
 #include "boundary/cure_crossings.h"
 #include "boundary/surface_triangles.h"
+#include "boundary/surround.h"
 
 namespace curvetet::test {
 
@@ -58,7 +59,10 @@ void run_stages(const Model& model, const BoundaryRunOptions& options, BoundaryR
   }
   if (options.until == Until::crossings) return;
   run.tets = std::make_unique<Tetrahedralization>(run.vertices, 1);
-  const Status built = run.tets->build(surface_vertices(run), context);
+  std::vector<VertexId> vertices = surface_vertices(run);
+  const std::vector<VertexId> corners = add_surrounding(run.vertices);
+  vertices.insert(vertices.end(), corners.begin(), corners.end());
+  const Status built = run.tets->build(vertices, context);
   ASSERT_TRUE(built.ok()) << built.error().message;
   run.conjoint->attach(run.tets.get());
   if (options.until == Until::tets) return;
