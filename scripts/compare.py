@@ -3,7 +3,8 @@
 
 Peers are Debian's programs: gmsh with its Delaunay and its HXT algorithm, and netgen. One that is not installed is left
 out, and the table says so. Each gets the size, and 12 elements per turn where it knows such a thing; all else is as it
-comes. The judge is as in corpus.py. A mesh counts only if the program ended with 0 in time and the judge passes.
+comes. The judge is as in corpus.py. A mesh counts only if the program ended with 0 in time and the judge passes. What the
+output folder has measured already is kept, so that a run goes on where it was ended; `--again` measures a program anew.
 
     scripts/compare.py --list bodies.txt --divide 20 --curvetet build/release/apps/curvetet/curvetet --judge judge \\
         --out out/compare --page page.md
@@ -110,10 +111,21 @@ def write_page(page, lines):
     page.write_text(head + begin + "\n" + "\n".join(lines) + "\n" + end + rest.split(end)[1])
 
 
+def key_of(row):
+    return row["body"], row["divide"], row["program"]
+
+
+def read_rows(path):
+    """Of a run that was ended the last line may be cut off."""
+    rows = [read_json(line) for line in path.read_text().splitlines()] if path.is_file() else []
+    return [row for row in rows if row is not None]
+
+
 def parse_arguments():
     parser = common_parser(__doc__)
     parser.add_argument("--page", type=pathlib.Path, help="page whose table, between <!-- table: begin --> and "
                         "<!-- table: end -->, is replaced")
+    parser.add_argument("--again", action="append", default=[], metavar="PROGRAM", help="as curvetet, after a change")
     parser.set_defaults(divide="20", jobs=1, time_limit=120)  # more than one job spoils the times
     arguments = parser.parse_args()
     if arguments.judge is None:
@@ -129,13 +141,16 @@ def main():
     missing = [name for name, _, installed in programs(arguments) if not installed]
     comparison = Comparison(arguments)
     jobs = [(body, divisor, name, command) for body in bodies for divisor in divisors for name, command in there]
-    rows = []
-    with open(arguments.out / "comparison.jsonl", "w") as results, \
-            concurrent.futures.ThreadPoolExecutor(max_workers=arguments.jobs) as pool:
-        for row in pool.map(comparison.measure, jobs):
-            rows.append(row)
-            results.write(json.dumps(row) + "\n")
-            results.flush()
+    results = arguments.out / "comparison.jsonl"
+    known = {key_of(row): row for row in read_rows(results) if row["program"] not in arguments.again}
+    results.write_text("".join(json.dumps(row) + "\n" for row in known.values()))
+    left = [job for job in jobs if job[:3] not in known]
+    with open(results, "a") as out, concurrent.futures.ThreadPoolExecutor(max_workers=arguments.jobs) as pool:
+        for row in pool.map(comparison.measure, left):
+            known[key_of(row)] = row
+            out.write(json.dumps(row) + "\n")
+            out.flush()
+    rows = [known[job[:3]] for job in jobs]
     lines = table(rows, divisors, [name for name, _ in there], missing)
     print("\n".join(lines))
     if arguments.page:
