@@ -1,7 +1,7 @@
 // Of two triangles that cross, the one farther from its face is refined: a flat facet on a flat face is never the
 // culprit. Two facets of one face that lie on it and cross all the same are thinned out instead. Rejected: emptying
-// equatorial spheres of all foreign vertices (the paper's rule), which on a thin shell asks for elements as small as the
-// wall is thin though no triangle crosses another.
+// equatorial spheres of all foreign vertices (the paper's rule), which on a thin shell asks for elements as small as
+// the wall is thin though no triangle crosses another.
 #include "boundary/cure_crossings.h"
 
 #include <fmt/format.h>

@@ -3,8 +3,8 @@
 //
 // Before: valid face meshes. After (complete): no two triangles of t_3d cross, exactly, and none is folded back against
 // the normal of its face. Terminates: each round takes out a node of the first face meshes, or splits at least one
-// triangle or segment, none below the floor, and the rounds are bounded, and the points by the area that crosses over the
-// square of the floor.
+// triangle or segment, none below the floor, and the rounds are bounded, and the points by the area that crosses over
+// the square of the floor.
 #pragma once
 
 #include <string>
