@@ -27,6 +27,7 @@ def operations(diagonal):
 
 def copy(body, operation, path, seconds):
     """False if gmsh does not make it."""
+    path.unlink(missing_ok=True)  # of an earlier run
     script = path.with_suffix(".geo")
     script.write_text('SetFactory("OpenCASCADE");\nGeometry.OCCFixDegenerated = 0;\n'
                       f"v() = ShapeFromFile({json.dumps(str(body))});\n{operation}\nSave {json.dumps(str(path))};\n")
@@ -58,11 +59,9 @@ def main():
     for body in read_list(arguments.list):
         if bodies == arguments.most:
             break
-        if body not in known:
-            continue
         copies = [out / f"{pathlib.Path(body).name}.{name}.brep" for name in operations(1)]
-        if all(copy(root / body, operation, path, arguments.time_limit)
-               for path, operation in zip(copies, operations(known[body]).values())):
+        if body in known and all(copy(root / body, operation, path, arguments.time_limit)
+                                 for path, operation in zip(copies, operations(known[body]).values())):
             made += [path.name for path in copies]
             bodies += 1
         else:

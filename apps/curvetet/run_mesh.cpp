@@ -12,14 +12,13 @@
 #include "commands.h"
 #include "curvetet/curvetet.h"
 #include "mesh_to_files.h"
+#include "pipeline/pipeline.h"
 #include "summary.h"
 #include "terminal.h"
 
 namespace curvetet::cli {
 
 namespace {
-
-constexpr const char* kPleaseReport = "please report it, with the input and the command line";
 
 /// Whether a file could be put there; asked before any work, since meshing may take long.
 Status check_writable(const std::string& path) {
@@ -114,15 +113,8 @@ Result<MeshOutput> mesh_or_internal_error(const MeshCommand& command, const Mesh
   };
   try {
     return mesh_within_limits(command, mesher, context, report);
-  } catch (const std::bad_alloc&) {
-    if (command.options.memory_limit == 0) return kept({ErrorCode::internal, "out of memory", {}, {}, kPleaseReport});
-    return kept({ErrorCode::memory_limit,
-                 "the memory limit was reached",
-                 {},
-                 {},
-                 "raise --memory-limit or ask for a larger --size"});
-  } catch (const std::exception& error) {
-    return kept({ErrorCode::internal, error.what(), {}, {}, kPleaseReport});
+  } catch (const std::exception& thrown) {
+    return kept(error_of(thrown, command.options));
   }
 }
 

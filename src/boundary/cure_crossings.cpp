@@ -1,12 +1,19 @@
 // Of two triangles that cross, the one farther from its face is refined: a flat facet on a flat face is never the
-// culprit. Two facets of one face that lie on it and cross all the same are thinned out instead. Rejected: emptying
-// equatorial spheres of all foreign vertices (the paper's rule), which on a thin shell asks for elements as small as
-// the wall is thin though no triangle crosses another.
+// culprit. Two facets of one sheet that lie on it and cross all the same are thinned out instead. Where facets pass
+// through each other by more than they leave their faces, round after round, the faces themselves cross and no size
+// helps. That crossings become more says nothing: those of a very thin wall do so for many rounds before they become
+// fewer.
+// Rejected: emptying equatorial spheres of all foreign vertices (the paper's rule), which on a thin shell asks for
+// elements as small as the wall is thin though no triangle crosses another.
 #include "boundary/cure_crossings.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <optional>
 #include <set>
 
 namespace curvetet {
@@ -17,12 +24,17 @@ constexpr std::size_t kPointsPerPair = 8;
 // More crossings than this are no thin wall but a surface mesh gone wrong.
 constexpr std::size_t kPairsPerTriangle = 4;
 
-// The surface near a facet is looked at where the mean normal is off by more than 26 degrees, or the facet by this
-// share of its longest edge.
-constexpr double kStraight = 0.9;
-constexpr double kFar = 0.05;
+// A facet lies on its face where it is nearer than this share of its longest edge, and the surface below is flat: the
+// normals of the corners' places are within 60 degrees of that below its middle. A coarse facet along a thin ring is as
+// near to it. Where points have not made crossings and folds fewer for some rounds, bent surfaces are thinned, too.
+constexpr double kOnFace = 0.1;
+constexpr double kFlat = 0.5;
+constexpr int kStalled = 3;
 
-constexpr double kOnFace = 0.1;  // distance of a facet that lies on its face, over its longest edge
+// Of what two facets leave their faces in their middles: more than they leave them anywhere. Where that is wrong all
+// the same, as on a facet over half a wave, the next rounds show it.
+constexpr double kHeights = 4;
+constexpr int kRoundsThrough = 6;
 
 class CrossingCure {
  public:
@@ -43,10 +55,14 @@ class CrossingCure {
       }
       context_.log(LogLevel::debug, fmt::format("crossings, round {}: {} pairs of {} triangles", result_.rounds,
                                                 pairs.size(), triangles_.size()));
-      const std::vector<std::uint32_t> folds = find_folds();
+      const std::vector<std::uint32_t> folds = folded_facets(conjoint_, triangles_);
       if (result_.rounds == 0) result_.first_folds = folds.size();
       if (pairs.empty() && folds.empty()) return result_;
-      const bool hopeless = result_.rounds == options_.rounds || static_cast<double>(result_.points) > budget_ ||
+      count_stalled(pairs.size() + folds.size());
+      deviations_.assign(triangles_.size(), std::nullopt);
+      rounds_through_ = any_passes_through(pairs) ? rounds_through_ + 1 : 0;
+      const bool hopeless = faces_cross() || result_.rounds == options_.rounds ||
+                            static_cast<double>(result_.points) > budget_ ||
                             pairs.size() >= kPairsPerTriangle * triangles_.size();
       const bool progress = !hopeless && (thin_out(pairs, folds) || (refine(pairs) | unfold(folds)));
       if (!progress) {
@@ -78,27 +94,82 @@ class CrossingCure {
     return mesh.triangle(t.triangle).alive() && mesh.vertices(t.triangle) == t.vertices;
   }
 
-  /// Takes out nodes where flat parts of a face overlap: facets that lie on their face already do so because its
+  void count_stalled(std::size_t left) {
+    stalled_ = left < fewest_ ? 0 : stalled_ + 1;
+    fewest_ = std::min(fewest_, left);
+  }
+
+  bool any_passes_through(const std::vector<std::pair<std::uint32_t, std::uint32_t>>& pairs) {
+    return std::any_of(pairs.begin(), pairs.end(), [this](const auto& pair) {
+      const double height = kHeights * (deviation_of(pair.first) + deviation_of(pair.second)) + 8 * kGrid;
+      return passes_through(pair.first, pair.second, height) || passes_through(pair.second, pair.first, height);
+    });
+  }
+
+  bool faces_cross() const { return rounds_through_ >= kRoundsThrough; }
+
+  /// Does an edge of facet i go through facet j, from farther than `height` on the one side to farther on the other,
+  /// and within j's outline all that way?
+  bool passes_through(std::uint32_t i, std::uint32_t j, double height) const {
+    const auto at = [&](std::uint32_t t, std::size_t k) {
+      return conjoint_.vertices().position(triangles_[t].vertices[k % 3]);
+    };
+    const Vec3 normal = normalized(cross(at(j, 1) - at(j, 0), at(j, 2) - at(j, 0)));
+    const auto is_within = [&](Vec3 p) {
+      for (std::size_t k = 0; k < 3; ++k)
+        if (dot(cross(at(j, k + 1) - at(j, k), p - at(j, k)), normal) < 0) return false;
+      return true;
+    };
+    for (std::size_t k = 0; k < 3; ++k) {
+      const Vec3 p = at(i, k), q = at(i, k + 1);
+      const double from = dot(p - at(j, 0), normal), to = dot(q - at(j, 0), normal);
+      if (from * to >= 0 || std::min(std::abs(from), std::abs(to)) < height) continue;
+      const auto where = [&](double away) { return p + ((from - away) / (from - to)) * (q - p); };
+      if (is_within(where(height)) && is_within(where(-height))) return true;
+    }
+    return false;
+  }
+
+  /// How a triangle lies on its face, if it does.
+  struct Lying {
+    bool on_face = false;
+    Vec3 normal;  ///< of the surface below
+  };
+
+  Lying lying(const SurfaceTriangle& t) const {
+    const FaceMesh& mesh = conjoint_.boundary().faces[t.face];
+    const std::array<NodeId, 3>& nodes = mesh.triangle(t.triangle).node;
+    const auto foot = foot_of(conjoint_, t.face, nodes);
+    if (!foot || foot->distance >= kOnFace * longest_edge(conjoint_.vertices(), t.vertices)) return {};
+    const Surface& surface = *conjoint_.model().faces[t.face].surface;
+    const Vec3 below = surface.normal(foot->uv);
+    const bool flat = stalled_ >= kStalled || std::all_of(nodes.begin(), nodes.end(), [&](NodeId n) {
+                        return dot(below, surface.normal(mesh.chart.to_uv(mesh.node(n).q))) > kFlat;
+                      });
+    return {flat, below};
+  }
+
+  /// Takes out nodes where a face overlaps itself in one sheet: facets that lie on it already do so because its
   /// parameters are sheared, and more points would only make more such facets.
   bool thin_out(const std::vector<std::pair<std::uint32_t, std::uint32_t>>& pairs,
                 const std::vector<std::uint32_t>& folds) {
+    std::map<std::uint32_t, Lying> known;
+    const auto lying_of = [&](std::uint32_t i) {
+      const auto [at, is_new] = known.try_emplace(i);
+      if (is_new) at->second = lying(triangles_[i]);
+      return at->second;
+    };
     bool any = false;
     for (const auto& [i, j] : pairs) {
       const SurfaceTriangle &a = triangles_[i], &b = triangles_[j];
       if (a.face != b.face || !still_there(a) || !still_there(b)) continue;
-      if (!lies_on_face(a) || !lies_on_face(b)) continue;
+      const Lying one = lying_of(i), two = lying_of(j);
+      if (!one.on_face || !two.on_face || dot(one.normal, two.normal) <= 0) continue;
       for (const SurfaceTriangle* t : {&a, &b}) any |= remove_nodes(*t);
     }
-    for (const std::uint32_t i : folds) {
-      const SurfaceTriangle& t = triangles_[i];
-      if (still_there(t) && lies_on_face(t)) any |= remove_nodes(t);
-    }
+    for (const std::uint32_t i : folds)
+      if (still_there(triangles_[i]) && lying_of(i).on_face) any |= remove_nodes(triangles_[i]);
     return any;
-  }
-
-  bool lies_on_face(const SurfaceTriangle& t) const {
-    const auto foot = foot_of(conjoint_, t.face, conjoint_.boundary().faces[t.face].triangle(t.triangle).node);
-    return foot && foot->distance < kOnFace * longest_edge(conjoint_.vertices(), t.vertices);
   }
 
   /// Those of the first surface mesh, so that this ends.
@@ -119,25 +190,11 @@ class CrossingCure {
       if (context_.should_stop()) return any;
       const SurfaceTriangle &a = triangles_[i], &b = triangles_[j];
       if (!still_there(a) || !still_there(b)) continue;
-      const double da = deviation_of(a), db = deviation_of(b);
+      const double da = deviation_of(i), db = deviation_of(j);
       const bool a_first = da >= db;
       if (refine_one(a_first ? a : b, std::max(da, db)) || refine_one(a_first ? b : a, std::min(da, db))) any = true;
     }
     return any;
-  }
-
-  std::vector<std::uint32_t> find_folds() const {
-    std::vector<std::uint32_t> folds;
-    for (std::uint32_t i = 0; i < triangles_.size(); ++i) {
-      const SurfaceTriangle& t = triangles_[i];
-      double cosine = facing(conjoint_, t.face, t.triangle);
-      if (cosine < kStraight ||
-          deviation(conjoint_, t.face, t.triangle) > kFar * longest_edge(conjoint_.vertices(), t.vertices))
-        cosine = std::min(
-            cosine, facing_at_foot(conjoint_, t.face, conjoint_.boundary().faces[t.face].triangle(t.triangle).node));
-      if (cosine < kFolded) folds.push_back(i);
-    }
-    return folds;
   }
 
   bool unfold(const std::vector<std::uint32_t>& folds) {
@@ -151,7 +208,13 @@ class CrossingCure {
     return any;
   }
 
-  double deviation_of(const SurfaceTriangle& t) const {
+  /// Of a triangle, or a segment of it, from its face or curve; asked for again and again, but measured once a round.
+  double deviation_of(std::uint32_t i) {
+    if (!deviations_[i]) deviations_[i] = measure_deviation(triangles_[i]);
+    return *deviations_[i];
+  }
+
+  double measure_deviation(const SurfaceTriangle& t) const {
     double largest = deviation(conjoint_, t.face, t.triangle);
     for (std::size_t k = 0; k < 3; ++k) {
       const EdgeId edge = conjoint_.segment_edge(t.vertices[k], t.vertices[(k + 1) % 3]);
@@ -198,9 +261,9 @@ class CrossingCure {
       failure.where = failure.where + (1.0 / 3) * p;
       shortest = std::min(shortest, distance(p, conjoint_.vertices().position(a.vertices[(k + 1) % 3])));
     }
-    failure.size = 0.5 * shortest;
     failure.crossing = i != j;
-    failure.proved = i != j && deviation_of(a) <= 8 * kGrid && deviation_of(b) <= 8 * kGrid;
+    failure.size = failure.crossing && faces_cross() ? 0 : 0.5 * shortest;
+    failure.proved = i != j && deviation_of(i) <= 8 * kGrid && deviation_of(j) <= 8 * kGrid;
     failure.what = failure.proved ? "flat facets that lie on their faces cross: the body crosses itself" : what;
     result_.failures.push_back(failure);
   }
@@ -211,7 +274,11 @@ class CrossingCure {
   SurfaceRefinement refinement_;
   CrossingResult result_;
   double budget_ = 0;
+  std::size_t fewest_ = std::numeric_limits<std::size_t>::max();  ///< crossings and folds of a round
+  int stalled_ = 0;                                               ///< rounds since then
+  int rounds_through_ = 0;  ///< running, in which facets passed through each other
   std::vector<SurfaceTriangle> triangles_;
+  std::vector<std::optional<double>> deviations_;  ///< by triangle
   std::set<std::pair<FaceId, FaceId>> reported_;
 };
 

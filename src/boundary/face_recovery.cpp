@@ -10,6 +10,7 @@
 
 #include <algorithm>
 
+#include "base/fnv.h"
 #include "boundary/edge_recovery.h"
 #include "boundary/facet_fallback.h"
 #include "boundary/fill_holes.h"
@@ -268,11 +269,11 @@ IndexedVector<FaceId, std::vector<FacetKey>> locked_facets(const Tetrahedralizat
 }
 
 std::uint64_t facet_hash(const std::vector<FacetKey>& facets) {
-  std::uint64_t hash = 0xcbf29ce484222325ULL;  // FNV-1a
+  Fnv1a hash;
   for (const FacetKey& facet : facets)
     for (std::uint32_t value : facet)
-      for (int shift = 0; shift < 32; shift += 8) hash = (hash ^ ((value >> shift) & 0xFFU)) * 0x100000001b3ULL;
-  return hash;
+      for (int shift = 0; shift < 32; shift += 8) hash.add((value >> shift) & 0xFFU);
+  return hash.value();
 }
 
 bool take_over(FaceMesh& mesh, FaceId face, const MarchResult& march, FaceCertificate& certificate) {

@@ -15,6 +15,11 @@ namespace curvetet {
 
 namespace {
 
+// The surface near a facet is looked at where the mean normal is off by more than 26 degrees, or the facet by this
+// share of its longest edge.
+constexpr double kStraight = 0.9;
+constexpr double kFar = 0.05;
+
 /// Cosine to the normal of a triangle that no flip nearby turns round again; one that leans less may be flipped.
 constexpr double kTurnedBack = -0.5;
 
@@ -199,11 +204,11 @@ std::optional<SurfaceFoot> foot_of(const Conjoint& conjoint, FaceId face, const 
   for (const Vec2 guess : {(1.0 / 3) * (q[0] + q[1] + q[2]), q[0], q[1], q[2]}) {
     const auto found = surface.project(centroid, mesh.chart.to_uv(guess));
     if (!found) continue;
-    const double away = distance(surface.value(*found), centroid);
-    if (!foot || away < foot->distance) foot = SurfaceFoot{*found, away};
+    // Beyond its border the face's surface may turn back: the closest point of the face is on the border then.
+    const Vec2 uv = within_box(conjoint.model().faces[face], *found);
+    const double away = distance(surface.value(uv), centroid);
+    if (!foot || away < foot->distance) foot = SurfaceFoot{uv, away};
   }
-  // Beyond its border the face's surface may turn back: the closest point of the face is on the border then.
-  if (foot) foot->uv = within_box(conjoint.model().faces[face], foot->uv);
   return foot;
 }
 
@@ -212,6 +217,23 @@ double facing_at_foot(const Conjoint& conjoint, FaceId face, const std::array<No
   const std::array<Vec3, 3> p = places_of(conjoint, face, nodes).p;
   const Surface& surface = *conjoint.model().faces[face].surface;
   return foot ? dot(normalized(cross(p[1] - p[0], p[2] - p[0])), surface.normal(foot->uv)) : 1;
+}
+
+std::vector<std::uint32_t> folded_facets(const Conjoint& conjoint, const std::vector<SurfaceTriangle>& triangles) {
+  std::vector<std::uint32_t> folds;
+  for (std::uint32_t i = 0; i < triangles.size(); ++i) {
+    const SurfaceTriangle& t = triangles[i];
+    double cosine = facing(conjoint, t.face, t.triangle);
+    const auto is_far = [&] {
+      return deviation(conjoint, t.face, t.triangle) > kFar * longest_edge(conjoint.vertices(), t.vertices);
+    };
+    if (cosine < kStraight || is_far()) {
+      const FaceMesh& mesh = conjoint.boundary().faces[t.face];
+      cosine = std::min(cosine, facing_at_foot(conjoint, t.face, mesh.triangle(t.triangle).node));
+    }
+    if (cosine < kFolded) folds.push_back(i);
+  }
+  return folds;
 }
 
 double segment_deviation(const Conjoint& conjoint, EdgeId edge, VertexId a, VertexId b) {

@@ -35,14 +35,17 @@ double facing(const Conjoint& conjoint, FaceId face, TriangleId triangle);
 /// Cosine of the angle to the surface's normal, 84 degrees, from which a facet counts as folded.
 inline constexpr double kFolded = 0.1;
 struct SurfaceFoot {
-  Vec2 uv;              ///< within the box of the face's domain
-  double distance = 0;  ///< from the surface beyond that box, too
+  Vec2 uv;  ///< within the box of the face's domain
+  double distance = 0;
 };
 /// Where the surface is nearest to a triangle's centroid, searched from the same place of the chart and from the
 /// corners, as the final check does; empty if no such place is found.
 std::optional<SurfaceFoot> foot_of(const Conjoint& conjoint, FaceId face, const std::array<NodeId, 3>& nodes);
 /// Cosine of the angle between a triangle's normal and the surface's at its foot; 1 without a foot.
 double facing_at_foot(const Conjoint& conjoint, FaceId face, const std::array<NodeId, 3>& nodes);
+/// Which of the triangles are folded against their faces (indices, rising): at the same place of the chart, or, where a
+/// facet is tilted or off its face, at its foot.
+std::vector<std::uint32_t> folded_facets(const Conjoint& conjoint, const std::vector<SurfaceTriangle>& triangles);
 /// Distance from the middle of a segment to the curve at the middle parameter.
 double segment_deviation(const Conjoint& conjoint, EdgeId edge, VertexId a, VertexId b);
 

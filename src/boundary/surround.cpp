@@ -2,12 +2,10 @@
 
 namespace curvetet {
 
-std::vector<VertexId> add_surrounding(VertexStore& vertices) {
-  std::vector<VertexId> corners;
+void add_surrounding(VertexStore& store, std::vector<VertexId>& vertices) {
   for (const double x : {-1.0, 1.0})
     for (const double y : {-1.0, 1.0})
-      for (const double z : {-1.0, 1.0}) corners.push_back(vertices.add({x, y, z}, Owner{}, {}, Origin::surrounding));
-  return corners;
+      for (const double z : {-1.0, 1.0}) vertices.push_back(store.add({x, y, z}, Owner{}, {}, Origin::surrounding));
 }
 
 }  // namespace curvetet

@@ -7,9 +7,9 @@
 
 namespace curvetet {
 
-/// Adds the corners of the cube of all coordinates to the store, for the tetrahedralization of a body: the convex hull
-/// of the body alone has the body's flat faces as facets that nothing lies beyond, and neither flips nor fillings
+/// Adds the corners of the cube of all coordinates to the store and to the vertices of a body's tetrahedralization: the
+/// hull of the body alone has the body's flat faces as facets that nothing lies beyond, and neither flips nor fillings
 /// change how these are triangulated. Owned by no solid; only tets outside of the body have them.
-std::vector<VertexId> add_surrounding(VertexStore& vertices);
+void add_surrounding(VertexStore& store, std::vector<VertexId>& vertices);
 
 }  // namespace curvetet

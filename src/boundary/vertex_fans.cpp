@@ -7,8 +7,8 @@
 #include <algorithm>
 #include <array>
 #include <map>
-#include <numeric>
 
+#include "base/disjoint_sets.h"
 #include "conjoint/conjoint.h"
 
 namespace curvetet {
@@ -17,9 +17,7 @@ namespace {
 
 class Corners {
  public:
-  explicit Corners(std::size_t triangles) : vertex_(3 * triangles), parent_(3 * triangles), flags_(3 * triangles, 0) {
-    std::iota(parent_.begin(), parent_.end(), 0U);
-  }
+  explicit Corners(std::size_t triangles) : vertex_(3 * triangles), flags_(3 * triangles, 0), sets_(3 * triangles) {}
 
   static std::uint32_t number(std::size_t triangle, std::size_t k) {
     return static_cast<std::uint32_t>(3 * triangle + k);
@@ -33,7 +31,7 @@ class Corners {
     }
   }
 
-  void join(std::uint32_t a, std::uint32_t b) { parent_[root(a)] = root(b); }
+  void join(std::uint32_t a, std::uint32_t b) { sets_.join(a, b); }
 
   void mark_on_boundary(std::uint32_t corner) { flags_[corner] |= kOnBoundary; }
 
@@ -65,14 +63,14 @@ class Corners {
   };
 
   std::vector<Fan> fans() {
-    std::vector<unsigned> of_set(parent_.size(), 0);
-    std::vector<VertexId> vertex(parent_.size());
-    for (std::uint32_t c = 0; c < parent_.size(); ++c) {
-      of_set[root(c)] |= flags_[c];
-      if ((flags_[c] & kReal) != 0) vertex[root(c)] = vertex_[c];
+    std::vector<unsigned> of_set(flags_.size(), 0);
+    std::vector<VertexId> vertex(flags_.size());
+    for (std::uint32_t c = 0; c < flags_.size(); ++c) {
+      of_set[sets_.root(c)] |= flags_[c];
+      if ((flags_[c] & kReal) != 0) vertex[sets_.root(c)] = vertex_[c];
     }
     std::vector<Fan> fans;
-    for (std::uint32_t c = 0; c < parent_.size(); ++c)
+    for (std::uint32_t c = 0; c < flags_.size(); ++c)
       if ((of_set[c] & kReal) != 0)
         fans.push_back({vertex[c], (of_set[c] & kEnd) != 0, (of_set[c] & kOnBoundary) != 0});
     return fans;
@@ -85,14 +83,9 @@ class Corners {
     std::uint32_t low, high;
   };
 
-  std::uint32_t root(std::uint32_t c) {
-    while (parent_[c] != c) c = parent_[c] = parent_[parent_[c]];
-    return c;
-  }
-
   std::vector<VertexId> vertex_;
-  std::vector<std::uint32_t> parent_;
   std::vector<unsigned> flags_;
+  DisjointSets sets_;
   std::vector<Side> sides_;
 };
 
@@ -162,8 +155,8 @@ std::string describe(const FanFault& fault) {
   const auto words = [](const Fans& fans) {
     return std::to_string(fans.closed) + " closed and " + std::to_string(fans.open) + " open";
   };
-  return "triangles around vertex " + std::to_string(fault.vertex.value()) + " form fans, " + words(fault.found) +
-         ", instead of " + words(fault.expected);
+  return "the triangles around a vertex of the face form fans, " + words(fault.found) + ", instead of " +
+         words(fault.expected);
 }
 
 std::vector<FanFault> find_fan_faults(const FaceMesh& t_ps, const std::vector<FacetKey>& facets) {

@@ -82,13 +82,6 @@ Joining joining_of(const std::string& word) {
   return joining;
 }
 
-/// A number that comes back as it was.
-std::string exact(double value) {
-  std::ostringstream out;
-  out << std::hexfloat << value;
-  return out.str();
-}
-
 /// A folder of our own that vanishes with its contents.
 class TemporaryFolder {
  public:
@@ -175,8 +168,8 @@ Result<CadBody> read_isolated(const std::string& path, const std::string& helper
   ChildProgram child(
       helper,
       {helper, kHelperFlag, path, out_path, options.input_unit, std::to_string(options.isolate_memory_limit),
-       std::to_string(allowed), word_of(options.joining), list_of(options.suspects), exact(options.min_feature.value),
-       options.min_feature.unit, list_of(parts)},
+       std::to_string(allowed), word_of(options.joining), list_of(options.suspects),
+       exact_text(options.min_feature.value), options.min_feature.unit, list_of(parts)},
       "/dev/null", {std::string(kHelperVariable) + "=1", end_with_parent_variable()});
   if (!child.started()) return Error{ErrorCode::bad_option, "cannot start the helper program " + helper};
   const auto start = Clock::now();

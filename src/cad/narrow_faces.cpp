@@ -13,8 +13,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <numeric>
 
+#include "base/disjoint_sets.h"
 #include "cad/occt_geometry.h"
 #include "cad/sew.h"
 
@@ -77,30 +77,12 @@ std::vector<char> faces_of_solids(const CadBody& body, const TopTools_IndexedMap
   return of_solid;
 }
 
-class Sets {
- public:
-  explicit Sets(std::size_t count) : parent_(count) { std::iota(parent_.begin(), parent_.end(), std::size_t{0}); }
-  std::size_t root(std::size_t i) const {
-    while (parent_[i] != i) i = parent_[i];
-    return i;
-  }
-  /// The least member stands for a set.
-  void join(std::size_t a, std::size_t b) {
-    a = root(a);
-    b = root(b);
-    parent_[std::max(a, b)] = std::min(a, b);
-  }
-
- private:
-  std::vector<std::size_t> parent_;
-};
-
 /// Which of the faces hang together by edges.
-Sets connected(const std::vector<TopoDS_Shape>& faces) {
-  Sets sets(faces.size());
+DisjointSets connected(const std::vector<TopoDS_Shape>& faces) {
+  DisjointSets sets(faces.size());
   TopTools_IndexedMapOfShape edges;
-  std::vector<std::size_t> first_at;  // face at each edge
-  for (std::size_t f = 0; f < faces.size(); ++f) {
+  std::vector<std::uint32_t> first_at;  // face at each edge
+  for (std::uint32_t f = 0; f < faces.size(); ++f) {
     for (TopExp_Explorer edge(faces[f], TopAbs_EDGE); edge.More(); edge.Next()) {
       const auto number = static_cast<std::size_t>(edges.Add(edge.Current())) - 1;
       if (number == first_at.size()) first_at.push_back(f);
@@ -125,11 +107,11 @@ std::vector<std::vector<NarrowFace>> narrow_faces(const CadBody& body, double le
     found.push_back(narrow);
     shapes.push_back(faces(f));
   }
-  const Sets sets = connected(shapes);
+  DisjointSets sets = connected(shapes);
   std::vector<std::vector<NarrowFace>> groups;
   std::vector<std::size_t> group_of(found.size());
-  for (std::size_t i = 0; i < found.size(); ++i) {
-    const std::size_t root = sets.root(i);
+  for (std::uint32_t i = 0; i < found.size(); ++i) {
+    const std::uint32_t root = sets.root(i);
     if (root == i) {
       group_of[i] = groups.size();
       groups.emplace_back();

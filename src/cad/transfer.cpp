@@ -54,12 +54,6 @@ std::string unescaped(const std::string& text) {
   return out;
 }
 
-std::string hex(double x) {
-  std::ostringstream out;
-  out << std::hexfloat << x;
-  return out.str();
-}
-
 double number(const std::string& text) { return std::strtod(text.c_str(), nullptr); }
 
 std::uint32_t read_id(const std::string& text) {
@@ -82,7 +76,8 @@ class Fields {
 void write_label(std::ostream& out, const char* type, const Label& label, const std::string& path) {
   out << type << '\t' << label.cad_id << '\t' << escaped(label.name) << '\t' << escaped(path);
   if (label.colour) {
-    out << '\t' << hex(label.colour->red) << '\t' << hex(label.colour->green) << '\t' << hex(label.colour->blue);
+    out << '\t' << exact_text(label.colour->red) << '\t' << exact_text(label.colour->green) << '\t'
+        << exact_text(label.colour->blue);
   }
   out << '\n';
 }
@@ -97,8 +92,8 @@ Label read_label(const Fields& fields) {
 
 void write_suppressed(std::ostream& out, const SuppressedDetail& detail) {
   out << "suppressed\t" << name(detail.kind) << '\t' << detail.label.cad_id << '\t' << escaped(detail.label.name)
-      << '\t' << hex(detail.size) << '\t' << hex(detail.place.x) << '\t' << hex(detail.place.y) << '\t'
-      << hex(detail.place.z) << '\n';
+      << '\t' << exact_text(detail.size) << '\t' << exact_text(detail.place.x) << '\t' << exact_text(detail.place.y)
+      << '\t' << exact_text(detail.place.z) << '\n';
 }
 
 SuppressedDetail read_suppressed(const Fields& fields) {
@@ -131,8 +126,8 @@ void write_labels(const CadBody& body, std::ostream& out) {
       write_label(out, type_name(type), labels[i], type == TopAbs_SOLID ? body.solid_paths[i] : "");
     }
   }
-  for (const double area : body.measures.face_areas) out << "area\t" << hex(area) << '\n';
-  for (const double volume : body.measures.shell_volumes) out << "volume\t" << hex(volume) << '\n';
+  for (const double area : body.measures.face_areas) out << "area\t" << exact_text(area) << '\n';
+  for (const double volume : body.measures.shell_volumes) out << "volume\t" << exact_text(volume) << '\n';
   out << "end\n";
 }
 
@@ -181,6 +176,12 @@ bool labels_fit(const CadBody& body) {
 
 }  // namespace
 
+std::string exact_text(double x) {
+  std::ostringstream out;
+  out << std::hexfloat << x;
+  return out.str();
+}
+
 bool announce_transfer(const std::string& out_path) {
   std::ofstream out(labels_path(out_path));
   out << kGreeting << '\n';
@@ -197,7 +198,9 @@ bool write_transfer(const CadBody& body, const std::string& out_path) {
 bool write_transfer(const Error& error, const std::string& out_path) {
   std::ofstream out(labels_path(out_path), std::ios::app);
   out << "error\t" << static_cast<int>(error.code) << '\t' << escaped(error.message) << '\t' << escaped(error.hint);
-  if (error.where) out << '\t' << hex(error.where->x) << '\t' << hex(error.where->y) << '\t' << hex(error.where->z);
+  if (error.where)
+    out << '\t' << exact_text(error.where->x) << '\t' << exact_text(error.where->y) << '\t'
+        << exact_text(error.where->z);
   out << '\n';
   for (const std::string& entity : error.entities) out << "entity\t" << escaped(entity) << '\n';
   out << "end\n";

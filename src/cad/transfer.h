@@ -9,6 +9,9 @@
 
 namespace curvetet {
 
+/// A number from which strtod makes the same to the last bit.
+std::string exact_text(double x);
+
 /// Writes the first line of the label file, by which the parent knows that the program is a helper of its own version.
 bool announce_transfer(const std::string& out_path);
 /// Writes the shape to out_path and its labels to out_path + ".labels". False if a file cannot be written.

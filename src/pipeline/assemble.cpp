@@ -3,6 +3,7 @@
 #include <bit>
 #include <set>
 
+#include "base/fnv.h"
 #include "boundary/surface_triangles.h"
 
 namespace curvetet {
@@ -173,15 +174,14 @@ void add_labels(Mesh& mesh, const Model& model) {
 Mesh assemble(const Conjoint& conjoint, const Settings& settings) { return Assembly(conjoint, settings).run(); }
 
 std::uint64_t mesh_hash(const Mesh& mesh) {
-  std::uint64_t hash = 0xcbf29ce484222325ULL;
-  const auto add = [&](std::uint64_t value) { hash = (hash ^ value) * 0x100000001b3ULL; };
+  Fnv1a hash;
   for (const Point& p : mesh.points)
-    for (double x : p) add(std::bit_cast<std::uint64_t>(x));
+    for (double x : p) hash.add(std::bit_cast<std::uint64_t>(x));
   for (const auto& t : mesh.tets)
-    for (std::uint32_t v : t) add(v);
+    for (std::uint32_t v : t) hash.add(v);
   for (const auto& t : mesh.triangles)
-    for (std::uint32_t v : t) add(v);
-  return hash;
+    for (std::uint32_t v : t) hash.add(v);
+  return hash.value();
 }
 
 }  // namespace curvetet

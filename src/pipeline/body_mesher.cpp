@@ -8,7 +8,9 @@
 #include <set>
 
 #include "boundary/fill_holes.h"
+#include "boundary/refine_surface.h"
 #include "boundary/simplicial.h"
+#include "boundary/surface_triangles.h"
 #include "boundary/surround.h"
 #include "boundary/vertex_fans.h"
 
@@ -29,12 +31,11 @@ class BodyMesher {
     while (true) {
       result.rounds = loop_.round();
       result.mesh = std::make_unique<BodyMesh>();
-      last_round_ = result.rounds == kOuterRounds;
       auto failures = attempt(*result.mesh);
       if (!failures.ok()) return failures.error();
       count_recovered(result.restarts, result.failures, failures.value());
       result.failures = std::move(failures.value());
-      if (result.failures.empty() || last_round_ || hopeless(result.failures)) return result;
+      if (result.failures.empty() || is_last_round() || hopeless(result.failures)) return result;
       for (const RecoveryFailure& f : result.failures) log(f);
       for (FaceId f : named(result.failures)) ++result.restarts[f].tried;
       loop_.asked.push_back(sources(result.failures));
@@ -44,6 +45,8 @@ class BodyMesher {
 
  private:
   using Failures = std::vector<RecoveryFailure>;
+
+  bool is_last_round() const { return loop_.round() == kOuterRounds; }
 
   static bool hopeless(const Failures& failures) {
     return std::all_of(failures.begin(), failures.end(),
@@ -115,7 +118,7 @@ class BodyMesher {
     }
     FaceRecoveryOptions options;
     options.floor = settings_.floor;
-    options.fallback = last_round_;  // before that, a smaller size is the better cure
+    options.fallback = is_last_round();  // before that, a smaller size is the better cure
     auto recovery = recover_faces(*body.conjoint, options, context_);
     if (!recovery.ok()) return recovery.error();
     body.recovery = std::move(recovery.value());
@@ -126,8 +129,7 @@ class BodyMesher {
     clock_.start("tetrahedralization", 0.3, 0.35);
     body.tets = std::make_unique<Tetrahedralization>(body.vertices, context_.seed);
     std::vector<VertexId> vertices = used_vertices(body);
-    const std::vector<VertexId> corners = add_surrounding(body.vertices);
-    vertices.insert(vertices.end(), corners.begin(), corners.end());
+    add_surrounding(body.vertices, vertices);
     const Status built = body.tets->build(vertices, context_);
     if (!built.ok()) return built.error();
     body.conjoint->attach(body.tets.get());
@@ -137,6 +139,7 @@ class BodyMesher {
     if (!recovered.ok()) return recovered.error();
     if (!body.recovery.failures.empty()) return body.recovery.failures;
     if (const Failures shared = shared_edges(body); !shared.empty()) return shared;
+    if (const Failures folded = folds(body); !folded.empty()) return folded;
     if (const Failures broken = broken_fans(body); !broken.empty()) return broken;
 
     clock_.start("classification", 0.5, 0.55);
@@ -153,6 +156,21 @@ class BodyMesher {
       if (!told.insert(std::minmax(offence.a, offence.b)).second) continue;
       const Vec3 a = body.vertices.position(offence.a), b = body.vertices.position(offence.b);
       failures.push_back({{offence.face}, 0.5 * (a + b), 0.5 * distance(a, b), describe(offence, model_)});
+    }
+    return failures;
+  }
+
+  /// What recovery took from the tetrahedralization was held against the surface, but not what lies around the points
+  /// that it added.
+  Failures folds(const BodyMesh& body) const {
+    Failures failures;
+    const auto triangles = surface_triangles(body.boundary);
+    for (const std::uint32_t i : folded_facets(*body.conjoint, triangles)) {
+      const SurfaceTriangle& t = triangles[i];
+      Vec3 middle{};
+      for (const VertexId v : t.vertices) middle = middle + (1.0 / 3) * body.vertices.position(v);
+      const double size = 0.5 * longest_edge(body.vertices, t.vertices);
+      failures.push_back({{t.face}, middle, size, "a facet is folded against its face"});
     }
     return failures;
   }
@@ -200,7 +218,6 @@ class BodyMesher {
   OuterLoop& loop_;
   StageClock& clock_;
   Context& context_;
-  bool last_round_ = false;  ///< of the outer loop
 };
 
 }  // namespace

@@ -9,6 +9,7 @@
 #include <fstream>
 #include <utility>
 
+#include "base/fnv.h"
 #include "boundary/classify.h"
 #include "cad/kept_body.h"
 #include "cad/load.h"
@@ -30,12 +31,11 @@ namespace {
 
 std::string file_hash(const std::string& path) {
   std::ifstream in(path, std::ios::binary);
-  std::uint64_t hash = 0xcbf29ce484222325ULL;
+  Fnv1a hash;
   char buffer[1 << 16];
   while (in.read(buffer, sizeof buffer) || in.gcount() > 0)
-    for (std::streamsize i = 0; i < in.gcount(); ++i)
-      hash = (hash ^ static_cast<unsigned char>(buffer[i])) * 0x100000001b3ULL;
-  return fmt::format("{:016x}", hash);
+    hash.add(std::string_view(buffer, static_cast<std::size_t>(in.gcount())));
+  return fmt::format("{:016x}", hash.value());
 }
 
 /// What a run leaves for its dossier, whatever becomes of it.
@@ -296,15 +296,18 @@ class Run {
   Trace trace_;
 };
 
-/// What came as an exception, as the dossier tells it.
+}  // namespace
+
 Error error_of(const std::exception& thrown, const Options& options) {
   if (dynamic_cast<const std::bad_alloc*>(&thrown) == nullptr)
-    return {ErrorCode::internal, thrown.what(), {}, {}, "please report it, with this folder"};
+    return {ErrorCode::internal, thrown.what(), {}, {}, "please report it, with the input and the options"};
   if (options.memory_limit == 0) return {ErrorCode::internal, "out of memory", {}, {}, "ask for a larger size"};
-  return {ErrorCode::memory_limit, "the memory limit was reached", {}, {}, "raise the limit, or ask for a larger size"};
+  return {ErrorCode::memory_limit,
+          "the memory limit was reached",
+          {},
+          {},
+          "raise the memory limit, or ask for a larger size"};
 }
-
-}  // namespace
 
 Result<MeshOutput> mesh_source(const Source& source, const Options& options, Context& context,
                                Report* report_on_failure) {

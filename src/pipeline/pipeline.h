@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <exception>
 #include <functional>
 #include <string>
 #include <vector>
@@ -25,6 +26,9 @@ struct Source {
   std::function<Result<std::string>(const std::vector<std::string>& parts, Context&)> parts;
   OuterLoop loop;  ///< where it stands from the beginning
 };
+
+/// What came as an exception, in words.
+Error error_of(const std::exception& thrown, const Options& options);
 
 Result<MeshOutput> mesh_source(const Source& source, const Options& options, Context& context,
                                Report* report_on_failure);

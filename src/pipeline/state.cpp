@@ -11,6 +11,7 @@
 #include <sstream>
 #include <string_view>
 
+#include "base/fnv.h"
 #include "io/output_file.h"
 
 namespace curvetet {
@@ -31,9 +32,9 @@ struct Header {
 constexpr std::size_t kHeaderBytes = kMagic.size() + sizeof(std::uint32_t) + 3 * sizeof(std::uint64_t);
 
 std::uint64_t hash_of(std::string_view bytes) {
-  std::uint64_t hash = 0xcbf29ce484222325ULL;
-  for (const char c : bytes) hash = (hash ^ static_cast<unsigned char>(c)) * 0x100000001b3ULL;
-  return hash;
+  Fnv1a hash;
+  hash.add(bytes);
+  return hash.value();
 }
 
 Json json_of(Vec3 p) { return {p.x, p.y, p.z}; }

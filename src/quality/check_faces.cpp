@@ -117,16 +117,20 @@ class FaceTask {
       if (const auto foot = foot_of(node, std::span(guesses).first(found), outcome)) guesses[found++] = foot->uv;
     }
     const Vec3 a = m_.points[nodes[0]], b = m_.points[nodes[1]], c = m_.points[nodes[2]];
-    const auto foot = projector_.project((1.0 / 3) * (a + b + c), std::span(guesses).first(found), kAnyDistance);
+    const Vec3 centroid = (1.0 / 3) * (a + b + c), normal = cross(b - a, c - a);
+    const auto foot = projector_.project(centroid, std::span(guesses).first(found), kAnyDistance);
     if (!foot) {
       outcome.lost.push_back(t);
       return;
     }
-    outcome.slack += triangle_area(a, b, c) * foot->distance;
-    // Beyond its border the face's surface may turn back: the closest point of the face is on the border then.
-    const Vec2 uv = foot->inside_box ? foot->uv : within_box(face_, foot->uv);
-    if (dot(cross(b - a, c - a), projector_.outward_normal(uv)) < 0) outcome.folds.push_back(t);
+    outcome.slack += 0.5 * norm(normal) * foot->distance;
+    // Around a sharp bend, and where the surface turns back beyond its border, the corners may lead to a place that is
+    // not the closest of the face.
+    if (is_against(normal, foot->uv) && is_against(normal, projector_.closest(centroid, foot->uv)))
+      outcome.folds.push_back(t);
   }
+
+  bool is_against(Vec3 normal, Vec2 uv) const { return dot(normal, projector_.outward_normal(uv)) < 0; }
 
   /// The foot of a node, found once; reports the node if it is off the surface.
   std::optional<Foot> foot_of(std::uint32_t node, std::span<const Vec2> others, FaceOutcome& outcome) {
@@ -269,6 +273,22 @@ void FaceProjector::consider(Vec3 point, Vec2 guess, std::optional<Foot>& best) 
   const Foot foot{*uv, distance(point, surface_->value(*uv)), inside_box(*uv)};
   const bool better = !best || (foot.inside_box != best->inside_box ? foot.inside_box : foot.distance < best->distance);
   if (better) best = foot;
+}
+
+Vec2 FaceProjector::closest(Vec3 point, Vec2 guess) {
+  if (coarse_.uv.empty()) coarse_.fill(face_, *surface_, kGuessSamples);
+  Vec2 best = within_box(face_, guess);
+  double least = distance(point, surface_->value(best));
+  for (const Vec2 sample : coarse_.nearest(point)) {
+    const auto foot = surface_->project(point, sample);
+    for (const Vec2 uv : {sample, within_box(face_, foot.value_or(sample))}) {
+      const double away = distance(point, surface_->value(uv));
+      if (away >= least) continue;
+      least = away;
+      best = uv;
+    }
+  }
+  return best;
 }
 
 void FaceProjector::Grid::fill(const ModelFace& face, const Surface& surface, int samples) {

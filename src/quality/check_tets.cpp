@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <numeric>
 
+#include "base/disjoint_sets.h"
 #include "mesh/tet_complex.h"
 #include "quality/checks.h"
 #include "quality/exact.h"
@@ -105,25 +106,6 @@ void file_facets(const Mesh& mesh, Topology& topology, Context& context) {
   });
 }
 
-/// Union-find with path halving; the smaller index is the root.
-class Pieces {
- public:
-  explicit Pieces(std::size_t n) : parent_(n) { std::iota(parent_.begin(), parent_.end(), 0U); }
-  std::uint32_t root(std::uint32_t i) {
-    while (parent_[i] != i) i = parent_[i] = parent_[parent_[i]];
-    return i;
-  }
-  void join(std::uint32_t a, std::uint32_t b) {
-    a = root(a);
-    b = root(b);
-    parent_[std::max(a, b)] = std::min(a, b);
-  }
-  bool is_root(std::uint32_t i) const { return parent_[i] == i; }
-
- private:
-  std::vector<std::uint32_t> parent_;
-};
-
 /// Whether a positive tet with this order of corners, or a negative one, really lies above.
 bool lies_above(const Topology& topology, const FacetUse& use) {
   return use.above == (topology.tet_sign[use.tet] >= 0);
@@ -151,7 +133,7 @@ void check_facet(const Mesh& mesh, Topology& topology, std::uint32_t smallest, s
 }
 
 void scan_facets(const Mesh& mesh, Topology& topology, Findings& findings) {
-  Pieces pieces(mesh.tets.size()), region_pieces(mesh.tets.size());
+  DisjointSets pieces(mesh.tets.size()), region_pieces(mesh.tets.size());
   for (std::size_t v = 0; v < mesh.points.size(); ++v) {
     const std::uint32_t end = topology.facet_begin[v + 1];
     for (std::uint32_t i = topology.facet_begin[v]; i < end;) {

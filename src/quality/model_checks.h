@@ -43,6 +43,8 @@ class FaceProjector {
   /// Closest of the feet found from the guesses, those inside the domain's box first. From a grid of samples if none of
   /// them is inside and within `near_enough`, and from a fine grid if that is finite and still not reached.
   std::optional<Foot> project(Vec3 point, std::span<const Vec2> guesses, double near_enough);
+  /// Closest to the point within the domain's box, of what the guess and a grid of samples lead to.
+  Vec2 closest(Vec3 point, Vec2 guess);
   Vec3 outward_normal(Vec2 uv) const;
   Vec3 value(Vec2 uv) const { return surface_->value(uv); }
 

@@ -10,10 +10,10 @@
 
 #include <algorithm>
 #include <map>
-#include <numeric>
 #include <set>
 #include <vector>
 
+#include "base/disjoint_sets.h"
 #include "predicates/predicates.h"
 #include "spatial/fill_cell.h"
 #include "spatial/flips_exchange.h"
@@ -196,24 +196,18 @@ class Refill {
     std::map<Pair, std::vector<std::uint32_t>> around;
     for (std::uint32_t s = 0; s < sides_.size(); ++s)
       for (std::size_t k = 0; k < 3; ++k) around[sorted(sides_[s][k], sides_[s][(k + 1) % 3])].push_back(s);
-    parent_.resize(sides_.size());
-    std::iota(parent_.begin(), parent_.end(), 0U);
+    DisjointSets sets(sides_.size());
     for (const auto& [edge, sides] : around) {
       for (std::uint32_t s : sides) {
         const auto next = next_side(s, edge, sides);
         if (!next) return false;
-        parent_[root(s)] = root(*next);
+        sets.join(s, *next);
       }
     }
     std::map<std::uint32_t, std::vector<std::uint32_t>> by_root;
-    for (std::uint32_t s = 0; s < sides_.size(); ++s) by_root[root(s)].push_back(s);
+    for (std::uint32_t s = 0; s < sides_.size(); ++s) by_root[sets.root(s)].push_back(s);
     for (auto& [r, cell] : by_root) cells_.push_back(std::move(cell));
     return std::all_of(cells_.begin(), cells_.end(), [&](const auto& cell) { return is_surface(cell); });
-  }
-
-  std::uint32_t root(std::uint32_t s) {
-    while (parent_[s] != s) s = parent_[s] = parent_[parent_[s]];
-    return s;
   }
 
   VertexId apex(std::uint32_t s, const Pair& edge) const {
@@ -301,7 +295,6 @@ class Refill {
   std::vector<TetId> region_;
   std::vector<CellSide> sides_;
   std::map<Triple, Outside> outside_;  ///< beyond the region's boundary
-  std::vector<std::uint32_t> parent_;  ///< of sides, towards the root of their cell
   std::vector<std::vector<std::uint32_t>> cells_;
   std::vector<TetComplex::Vertices> new_tets_;
 };

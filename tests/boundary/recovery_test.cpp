@@ -240,6 +240,23 @@ TEST(Crossings, OfATorusThatCrossesItselfEndInAFailure) {
   EXPECT_LT(surface_triangles(run->boundary).size(), 20000U);
 }
 
+// Facets go through each other by more than they leave their faces: no size helps, and nobody waits for the floor.
+TEST(Crossings, OfFacesThatPassThroughEachOtherEndEarly) {
+  for (const double size : {8.0, 4.0, 1.0}) {
+    BoundaryRunOptions options{size, 0};
+    options.until = Until::faces;
+    const Model model = make_pierced_ball(5, 1, 14);
+    const auto before = run_boundary(model, options);
+    options.until = Until::crossings;
+    const auto run = run_boundary(model, options);
+    ASSERT_FALSE(HasFailure());
+    ASSERT_FALSE(run->crossings.failures.empty());
+    EXPECT_TRUE(run->crossings.failures[0].crossing);
+    EXPECT_EQ(run->crossings.failures[0].size, 0);
+    EXPECT_LT(surface_triangles(run->boundary).size(), 10 * surface_triangles(before->boundary).size()) << size;
+  }
+}
+
 // The certificate says which facets of T_Γ are not those of t_3d; here that is found by comparing the two.
 TEST(Certificate, TellsWhatTheMarchBroughtIn) {
   std::size_t brought_in = 0;

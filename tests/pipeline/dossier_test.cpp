@@ -7,6 +7,7 @@
 #include <BRepBuilderAPI_NurbsConvert.hxx>
 #include <BRepPrimAPI_MakeBox.hxx>
 #include <BRepPrimAPI_MakeCylinder.hxx>
+#include <BRepPrimAPI_MakeTorus.hxx>
 #include <BRepTools.hxx>
 #include <BRep_Builder.hxx>
 #include <TopExp.hxx>
@@ -95,6 +96,16 @@ TopoDS_Shape crossed_by_a_cylinder() {
 
 TopoDS_Shape crossed_by_a_box() { return box_with_hollow(BRepPrimAPI_MakeBox(gp_Pnt(4, 4, 4), 8, 2, 2).Shape()); }
 
+/// One face that crosses itself, which only smaller and smaller sizes tell.
+TopoDS_Shape spindle_torus() { return BRepPrimAPI_MakeTorus(5, 5.5).Shape(); }
+
+Options coarse() {
+  Options options;
+  options.size = 16;
+  options.curvature = 0;
+  return options;
+}
+
 TEST_F(DossierTest, HasAllThatAFailureInTheSurfacesLeaves) {
   const Error error = fail(crossed_by_a_cylinder(), {});
   ASSERT_EQ(error.entities.size(), 2U) << error.message;
@@ -136,7 +147,7 @@ TEST_F(DossierTest, TheStateOfAFreeFormFailsAgain) {
 }
 
 TEST_F(DossierTest, TheStateFailsAgainAtItsLastAttempt) {
-  const Error error = fail(crossed_by_a_cylinder(), {});
+  const Error error = fail(spindle_torus(), coarse());
   const Result<State> state = read_state(file("replay.bin"));
   ASSERT_TRUE(state) << state.error().message;
   EXPECT_EQ(state.value().failure.message, error.message);
@@ -265,9 +276,10 @@ TEST_F(DossierTest, DamagedStatesAreRefused) {
 }
 
 TEST_F(DossierTest, StatesWithSoundHashesAndWrongContentsAreRefused) {
-  fail(crossed_by_a_cylinder(), {});
+  fail(spindle_torus(), coarse());
   const Result<State> good = read_state(file("replay.bin"));
   ASSERT_TRUE(good);
+  ASSERT_FALSE(good.value().loop.asked.empty());
   const auto error_of = [&](const State& state) {
     Context context;
     const Result<MeshOutput> made = replay(state, context, nullptr);

@@ -9,6 +9,7 @@
 #include <numbers>
 
 #include "quality/measures.h"
+#include "quality/model_checks.h"
 #include "quality/validate.h"
 #include "sample_meshes.h"
 #include "support/bodies.h"
@@ -461,6 +462,33 @@ TEST(Validate, FeetOfNodesOnEdgesAreFoundFromTheirParameterCurves) {
   locate_on_edges(s.model, s.mesh);
   const ValidationReport report = check(s, true);
   EXPECT_EQ(find(report, "vertex_off_face"), nullptr) << words(report);
+}
+
+/// A nose that turns back at u = 0, where a face may end.
+class Nose final : public Surface {
+ public:
+  SurfaceKind kind() const override { return SurfaceKind::other; }
+  Vec3 value(Vec2 uv) const override { return {uv.x * uv.x, uv.x, uv.y}; }
+  SurfaceFirst first(Vec2 uv) const override { return {value(uv), {2 * uv.x, 1, 0}, {0, 0, 1}}; }
+  SurfaceSecond second(Vec2 uv) const override {
+    const SurfaceFirst at = first(uv);
+    return {at.value, at.du, at.dv, {2, 0, 0}, {}, {}};
+  }
+  std::unique_ptr<Surface> clone() const override { return std::make_unique<Nose>(*this); }
+};
+
+TEST(FaceProjector, FindsTheClosestPointOfTheFaceThoughTheSurfaceBeyondIsCloser) {
+  ModelFace face;
+  face.surface = std::make_shared<Nose>();
+  face.low = {0, 0};
+  face.high = {1, 1};
+  checks::FaceProjector projector(face);
+  const Vec3 point{1, -0.05, 0.5};
+  for (const Vec2 guess : {Vec2{-0.7, 0.5}, Vec2{-0.005, 0.5}, Vec2{0.7, 0.5}, Vec2{5, 5}}) {
+    const Vec2 found = projector.closest(point, guess);
+    EXPECT_NEAR(found.x, 0.681, 2e-3);
+    EXPECT_NEAR(found.y, 0.5, 1e-6);
+  }
 }
 
 TEST(ForcedAngles, ThinWedgeOfTwoFacesIsTheBodysOwn) {

@@ -448,6 +448,19 @@ Model make_cone(double bottom, double top, double height) {
   return body.take();
 }
 
+Model make_pierced_ball(double ball, double radius, double height) {
+  Revolution body(ball, -0.5 * height, 0.5 * height);
+  const SolidId solid = body.solid(ball_volume(ball));
+  body.add({{half_circle(ball, true)}, solid, SolidId()});
+  Profile hole;
+  hole.left = solid;
+  const double h = 0.5 * height;
+  hole.pieces = {straight_piece({0, h}, {radius, h}), straight_piece({radius, h}, {radius, -h}),
+                 straight_piece({radius, -h}, {0, -h})};
+  body.add(hole);
+  return body.take();
+}
+
 Model make_torus(double major, double minor) {
   Revolution body(major + minor, -minor, minor);
   const SolidId solid = body.solid(2 * kPi * kPi * major * minor * minor);

@@ -60,8 +60,7 @@ void run_stages(const Model& model, const BoundaryRunOptions& options, BoundaryR
   if (options.until == Until::crossings) return;
   run.tets = std::make_unique<Tetrahedralization>(run.vertices, 1);
   std::vector<VertexId> vertices = surface_vertices(run);
-  const std::vector<VertexId> corners = add_surrounding(run.vertices);
-  vertices.insert(vertices.end(), corners.begin(), corners.end());
+  add_surrounding(run.vertices, vertices);
   const Status built = run.tets->build(vertices, context);
   ASSERT_TRUE(built.ok()) << built.error().message;
   run.conjoint->attach(run.tets.get());
