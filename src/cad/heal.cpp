@@ -11,6 +11,7 @@
 #include <ShapeFix_Shape.hxx>
 
 #include "cad/cells.h"
+#include "cad/complete_edges.h"
 #include "cad/confirm_crossing.h"
 #include "cad/convert.h"
 #include "cad/fuse.h"
@@ -111,6 +112,12 @@ void fix_shape(CadBody& body) {
     body.notes.push_back({"face " + std::to_string(body.faces[static_cast<std::size_t>(i - 1)].cad_id), "repaired"});
   }
   replace_shape(body, fix->Shape(), [&](const TopoDS_Shape& part) { return context->Apply(part); });
+}
+
+/// Edges that only stop too soon have a border where their faces say, however far that is.
+void complete(CadBody& body) {
+  const double diagonal = diagonal_of(body.shape);
+  complete_edges(body, 1e-5 * diagonal, 1e-7 * diagonal);
 }
 
 // --- details ---
@@ -218,10 +225,13 @@ Result<Model> heal_and_convert(CadBody& body, const std::string& source, const H
     Attempt best = attempt(body, source);
     // Distances alone are measured and told; the repairs seldom lessen them.
     if (best.bad >= kSerious) {
-      CadBody fixed = body;
-      fix_shape(fixed);
-      Attempt next = attempt(std::move(fixed), source);
-      if (next.bad < best.bad) best = std::move(next);
+      for (const auto repair : {complete, fix_shape}) {
+        CadBody repaired = best.body;
+        repair(repaired);
+        Attempt next = attempt(std::move(repaired), source);
+        if (next.bad < best.bad) best = std::move(next);
+        if (best.bad < kSerious) break;
+      }
     }
     if (!best.model) return best.model.error();
     if (options.min_feature.value != 0) {

@@ -1,15 +1,19 @@
 // Faults that real files have: vertices that are one place, faces that meet in fours, solids that overlap.
 #include <gtest/gtest.h>
 
+#include <BRepAdaptor_Curve.hxx>
 #include <BRepBuilderAPI_MakeEdge.hxx>
 #include <BRepBuilderAPI_MakeFace.hxx>
 #include <BRepBuilderAPI_MakeVertex.hxx>
 #include <BRepBuilderAPI_MakeWire.hxx>
 #include <BRepPrimAPI_MakeBox.hxx>
+#include <BRepPrimAPI_MakeCylinder.hxx>
 #include <BRepPrimAPI_MakeSphere.hxx>
 #include <BRep_Builder.hxx>
 #include <BRep_Tool.hxx>
+#include <TopExp.hxx>
 #include <TopExp_Explorer.hxx>
+#include <TopTools_IndexedMapOfShape.hxx>
 #include <TopoDS.hxx>
 #include <TopoDS_Compound.hxx>
 #include <TopoDS_Edge.hxx>
@@ -22,6 +26,7 @@
 #include <array>
 #include <cmath>
 #include <map>
+#include <numbers>
 #include <vector>
 
 #include "cad/shape.h"
@@ -201,6 +206,70 @@ TopoDS_Compound bar_that_touches_itself() {
     }
   }
   return compound_of(faces);
+}
+
+/// Straight edges; the axis of a wedge of a cylinder is among them.
+std::vector<TopoDS_Edge> straight_edges(const TopoDS_Shape& shape) {
+  TopTools_IndexedMapOfShape map;
+  TopExp::MapShapes(shape, TopAbs_EDGE, map);
+  std::vector<TopoDS_Edge> edges;
+  for (int e = 1; e <= map.Extent(); ++e)
+    if (BRepAdaptor_Curve(TopoDS::Edge(map(e))).GetType() == GeomAbs_Line) edges.push_back(TopoDS::Edge(map(e)));
+  return edges;
+}
+
+/// Cuts the curves of an edge short at both ends, as an exporter that takes the wrong parameters, and raises the
+/// tolerances of the vertices to the gap, as a reader may.
+void cut_short(const TopoDS_Edge& edge, double by, bool raise) {
+  Standard_Real low = 0, high = 0;
+  BRep_Tool::Range(edge, low, high);
+  const BRep_Builder builder;
+  builder.Range(edge, low + by, high - 2 * by);
+  if (!raise) return;
+  for (TopExp_Explorer v(edge, TopAbs_VERTEX); v.More(); v.Next())
+    builder.UpdateVertex(TopoDS::Vertex(v.Current()), 2 * by);
+}
+
+TEST(Repair, AnEdgeThatStopsShortOfItsVerticesIsJoinedToThem) {
+  for (const bool raise : {false, true}) {
+    for (std::size_t e = 0; e < 7; ++e) {
+      const TopoDS_Shape wedge = BRepPrimAPI_MakeCylinder(5, 8, 0.5 * std::numbers::pi).Shape();
+      ASSERT_EQ(straight_edges(wedge).size(), 7U);
+      cut_short(straight_edges(wedge)[e], 1, raise);
+      const Result<Model> model = convert(wedge);
+      ASSERT_TRUE(model) << model.error().message << ", edge " << e;
+      test::expect_sound(model.value(), "edge " + std::to_string(e));
+      EXPECT_EQ(model.value().edges.size(), 11U);
+      EXPECT_NEAR(test::total_volume(model.value()), 50 * std::numbers::pi, 1e-6);
+      EXPECT_TRUE(has_note(model.value(), "ends short of a vertex"));
+    }
+  }
+}
+
+/// Where nothing says how the border goes on, it is not made up: the straight piece would leave a face.
+TEST(Repair, AnEdgeThatStopsShortOnABentFaceIsRefused) {
+  const TopoDS_Shape wedge = BRepPrimAPI_MakeCylinder(5, 8, 0.5 * std::numbers::pi).Shape();
+  TopTools_IndexedMapOfShape map;
+  TopExp::MapShapes(wedge, TopAbs_EDGE, map);
+  for (int e = 1; e <= map.Extent(); ++e) {
+    const TopoDS_Edge edge = TopoDS::Edge(map(e));
+    if (BRepAdaptor_Curve(edge).GetType() == GeomAbs_Circle) cut_short(edge, 0.2, false);
+  }
+  const Result<Model> model = convert(wedge);
+  ASSERT_FALSE(model);
+  EXPECT_EQ(model.error().code, ErrorCode::bad_face);
+}
+
+/// Nor where it would run back along the edge: this one goes the wrong way from its vertex.
+TEST(Repair, AnEdgeThatGoesTheWrongWayIsRefused) {
+  const TopoDS_Shape wedge = BRepPrimAPI_MakeCylinder(5, 8, 0.5 * std::numbers::pi).Shape();
+  const TopoDS_Edge edge = straight_edges(wedge).front();
+  Standard_Real low = 0, high = 0;
+  BRep_Tool::Range(edge, low, high);
+  BRep_Builder().Range(edge, low - (high - low), low);
+  const Result<Model> model = convert(wedge);
+  ASSERT_FALSE(model);
+  EXPECT_EQ(model.error().code, ErrorCode::bad_face);
 }
 
 TEST(Repair, ABodyThatTouchesItselfAlongAnEdgeIsSewn) {
