@@ -4,6 +4,7 @@
 // the gap on both sides, two sheets use up half of it: h <= sqrt(2 gap / kappa). So only gaps below kappa h^2 / 2 can
 // lower the size h that is there already, which is a short reach; that is what makes the search fast. A flat face needs
 // nothing: its triangles do not leave it, and the other sheet's curvature counts at the other sheet's own samples.
+// Faces are looked at from the nearest on, and what one demands shortens the reach for the next.
 //
 // Sheets are met through patches (cells of a face's (u,v) box with a box in space): every patch of a curved face looks
 // for patches within reach, splits down to the size that is there, and projects its middle onto the other surface. Thus
@@ -24,7 +25,9 @@
 #include "sizing/gaps.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <limits>
 #include <map>
 
 #include "sizing/closest_pair.h"
@@ -120,10 +123,36 @@ struct Shared {
   std::vector<CadVertexId> vertices;
 };
 
+constexpr std::uint32_t kNoSlot = std::numeric_limits<std::uint32_t>::max();
+
+/// A face within reach of a probe, with those of its patches that are nearest by their middles, and their distances.
+struct NearFace {
+  using Ranked = std::pair<double, std::uint32_t>;
+  FaceId face;
+  double away = 0;  ///< of its nearest box
+  std::array<Ranked, kNearestPatches> nearest;
+
+  NearFace(FaceId id, double distance) : face(id), away(distance) {
+    nearest.fill({std::numeric_limits<double>::infinity(), kNoSlot});
+  }
+  void keep(Ranked patch) {
+    for (Ranked& slot : nearest)
+      if (patch < slot) std::swap(patch, slot);
+  }
+};
+
+/// How far a point is outside of a box, along the axis where that is most.
+double outside(const Box3& box, Vec3 p) {
+  double most = 0;
+  for (int i = 0; i < 3; ++i) most = std::max({most, box.low[i] - p[i], p[i] - box.high[i]});
+  return most;
+}
+
 /// One task's search. Owns its evaluators.
 class GapSearch {
  public:
-  explicit GapSearch(const Scene& scene) : scene_(scene), faces_(scene.input.model.faces.size()) {}
+  explicit GapSearch(const Scene& scene)
+      : scene_(scene), faces_(scene.input.model.faces.size()), slot_of_(faces_.size(), kNoSlot) {}
 
   void search(const Patch& patch) {
     std::vector<std::uint32_t> candidates;
@@ -240,38 +269,42 @@ class GapSearch {
     return period > 0 ? step - period * std::nearbyint(step / period) : step;
   }
 
-  /// Looks from the probe at each face among the candidates; returns the least size demanded at the probe, or near it.
-  double ask(const Probe& probe, const std::vector<std::uint32_t>& candidates, const Patch* patch) {
-    struct Candidate {
-      FaceId face;
-      double distance;
-      std::uint32_t patch;
-    };
-    std::vector<Candidate> order;
-    const double reach = 2 * reach_of(probe.curvature, probe.size);
-    const Box3 here{probe.point, probe.point};
-    for (const std::uint32_t i : candidates)
-      if (boxes_within(scene_.patches[i]->box, here, reach))
-        order.push_back({scene_.patches[i]->face, distance(scene_.patches[i]->point, probe.point), i});
-    std::sort(order.begin(), order.end(), [](const Candidate& a, const Candidate& b) {
-      return std::tie(a.face, a.distance, a.patch) < std::tie(b.face, b.distance, b.patch);
-    });
-    double demand = probe.size;
-    std::size_t rank = 0;
-    std::optional<Foot> last;
-    bool excluded = false;
-    for (std::size_t i = 0; i < order.size(); ++i) {
-      if (i == 0 || order[i].face != order[i - 1].face) {
-        rank = 0;
-        last.reset();
-        excluded = is_near_shared(probe, order[i].face, probe.size);
+  /// Sorts the candidates within reach of a point by their faces, the nearest face first.
+  void sort_by_face(Vec3 point, double reach, const std::vector<std::uint32_t>& candidates) {
+    near_.clear();
+    for (const std::uint32_t i : candidates) {
+      const Patch& patch = *scene_.patches[i];
+      const double away = outside(patch.box, point);
+      if (away > reach) continue;
+      std::uint32_t& slot = slot_of_[patch.face.value()];
+      if (slot == kNoSlot) {
+        slot = static_cast<std::uint32_t>(near_.size());
+        near_.emplace_back(patch.face, away);
       }
-      if (excluded || rank++ >= kNearestPatches) continue;
-      const FaceId other = order[i].face;
-      const auto foot = foot_on(probe.point, other, scene_.patches[order[i].patch]->middle());
-      if (!foot || (last && distance(last->point, foot->point) <= 1e-3 * foot->gap)) continue;
-      last = foot;
-      if (is_gap(probe, other, *foot)) demand = std::min(demand, look_at(probe, other, *foot, patch));
+      near_[slot].away = std::min(near_[slot].away, away);
+      near_[slot].keep({distance(patch.point, point), i});
+    }
+    for (const NearFace& face : near_) slot_of_[face.face.value()] = kNoSlot;
+    std::sort(near_.begin(), near_.end(),
+              [](const NearFace& a, const NearFace& b) { return std::tie(a.away, a.face) < std::tie(b.away, b.face); });
+  }
+
+  /// Looks from the probe at each face among the candidates; returns the least size demanded at the probe, or near it.
+  /// What a near face demands leaves nothing for those that are farther than such elements can reach.
+  double ask(const Probe& probe, const std::vector<std::uint32_t>& candidates, const Patch* patch) {
+    sort_by_face(probe.point, 2 * reach_of(probe.curvature, probe.size), candidates);
+    double demand = probe.size;
+    for (const NearFace& other : near_) {
+      if (other.away > 2 * reach_of(probe.curvature, demand)) break;
+      if (is_near_shared(probe, other.face, probe.size)) continue;
+      std::optional<Foot> last;
+      for (const auto& [away, i] : other.nearest) {
+        if (i == kNoSlot) continue;
+        const auto foot = foot_on(probe.point, other.face, scene_.patches[i]->middle());
+        if (!foot || (last && distance(last->point, foot->point) <= 1e-3 * foot->gap)) continue;
+        last = foot;
+        if (is_gap(probe, other.face, *foot)) demand = std::min(demand, look_at(probe, other.face, *foot, patch));
+      }
     }
     return demand;
   }
@@ -424,6 +457,8 @@ class GapSearch {
   std::map<std::tuple<bool, std::uint32_t, std::uint32_t>, Shared> shared_;
   std::vector<SizeSource> sources_;
   std::size_t probes_ = 0;
+  std::vector<NearFace> near_;          ///< of the probe at hand
+  std::vector<std::uint32_t> slot_of_;  ///< in near_, by face
 };
 
 Scene make_scene(const GapInput& input) {

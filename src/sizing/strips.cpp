@@ -19,15 +19,23 @@ constexpr double kStripWidths = 50;        ///< size over the width of a strip
 constexpr double kLeastStripSize = 0.2;    ///< of the field's size, below which no strip goes
 constexpr std::size_t kMostProbes = 4000;  ///< per stretch between two samples of an edge
 
+/// An edge, and the field's sizes at its samples.
+struct SizedEdge {
+  EdgeId id;
+  std::vector<double> sizes;
+};
+
 /// One edge of a face looking at another.
 class StripSearch {
  public:
-  StripSearch(const StripInput& input, FaceId face, EdgeId edge, EdgeId other, std::vector<SizeSource>& sources)
+  StripSearch(const StripInput& input, FaceId face, const SizedEdge& edge, EdgeId other,
+              std::vector<SizeSource>& sources)
       : input_(input),
         face_(face),
-        id_(edge),
+        id_(edge.id),
         other_id_(other),
-        edge_(input.model.edges[edge]),
+        sizes_(edge.sizes),
+        edge_(input.model.edges[edge.id]),
         other_(input.model.edges[other]),
         sources_(sources) {}
 
@@ -35,7 +43,7 @@ class StripSearch {
     const std::vector<EdgeSample>& samples = input_.edges[id_.value()].samples;
     const EdgeSamples& there = input_.edges[other_id_.value()];
     for (std::size_t i = 0; i + 1 < samples.size(); ++i) {
-      const double size = std::max(size_at(samples[i]), size_at(samples[i + 1]));
+      const double size = std::max(sizes_[i], sizes_[i + 1]);
       const double length = distance(samples[i].point, samples[i + 1].point);
       const Vec3 middle = 0.5 * (samples[i].point + samples[i + 1].point);
       if (!there.is_within(middle, size / kStripWidths + length + sag_of(there))) continue;
@@ -46,8 +54,6 @@ class StripSearch {
   }
 
  private:
-  double size_at(const EdgeSample& sample) const { return input_.field.at_edge(id_, sample.point); }
-
   /// How far a curve may leave the polygon of its samples.
   double sag_of(const EdgeSamples& there) const {
     return there.samples.empty() ? 0 : 0.125 * there.length / static_cast<double>(there.samples.size());
@@ -65,7 +71,7 @@ class StripSearch {
 
   /// What the strip demands at a point of the edge; the field's size if nothing.
   double ask(const EdgeSample& sample) {
-    const double size = size_at(sample);
+    const double size = input_.field.at_edge(id_, sample.point);
     const double guess = nearest_parameter(sample.point);
     const double t = other_curve_->project(sample.point, guess, other_.low, other_.high);
     const double width = distance(other_curve_->value(t), sample.point);
@@ -96,6 +102,7 @@ class StripSearch {
   const StripInput& input_;
   FaceId face_;
   EdgeId id_, other_id_;
+  const std::vector<double>& sizes_;
   const ModelEdge &edge_, &other_;
   std::vector<SizeSource>& sources_;
   std::unique_ptr<Curve> curve_, other_curve_;
@@ -114,17 +121,26 @@ std::vector<EdgeId> edges_of(const StripInput& input, const ModelFace& face) {
   return edges;
 }
 
+SizedEdge sized(const StripInput& input, EdgeId edge) {
+  SizedEdge result{edge, {}};
+  for (const EdgeSample& sample : input.edges[edge.value()].samples)
+    result.sizes.push_back(input.field.at_edge(edge, sample.point));
+  return result;
+}
+
 }  // namespace
 
 std::vector<SizeSource> strip_sources(const StripInput& input, Context& context) {
   std::vector<std::vector<SizeSource>> found(input.model.faces.size());
   parallel_for(context, found.size(), [&](std::size_t i) {
     const std::vector<EdgeId> edges = edges_of(input, input.model.faces[FaceId(i)]);
-    for (const EdgeId edge : edges)
+    for (const EdgeId id : edges) {
+      const SizedEdge edge = sized(input, id);
       for (const EdgeId other : edges) {
         if (context.should_stop()) return;
-        if (edge != other) StripSearch(input, FaceId(i), edge, other, found[i]).run();
+        if (id != other) StripSearch(input, FaceId(i), edge, other, found[i]).run();
       }
+    }
   });
   std::vector<SizeSource> sources;
   for (const auto& part : found) sources.insert(sources.end(), part.begin(), part.end());
