@@ -3,7 +3,8 @@
 
 Peers are Debian's programs: gmsh with its Delaunay and its HXT algorithm, and netgen. One that is not installed is left
 out, and the table says so. Each gets the size, and 12 elements per turn where it knows such a thing; all else is as it
-comes. The judge is as in corpus.py. A mesh counts only if the program ended with 0 in time and the judge passes. What the
+comes. The judge is as in corpus.py. A mesh counts only if the program ended with 0 in time and the judge passes, of the whole
+or, where solids touch or overlap without sharing faces, part by part; curvetet is asked for that (--conformal off). What the
 output folder has measured already is kept, so that a run goes on where it was ended; `--again` measures a program anew.
 
     scripts/compare.py --list bodies.txt --divide 20 --curvetet build/release/apps/curvetet/curvetet --judge judge \\
@@ -50,8 +51,11 @@ def programs(arguments):
                 "--curvature", curvature]
 
     has_gmsh = shutil.which("gmsh") is not None
-    return [("curvetet", own, True), ("gmsh, Delaunay", gmsh(1), has_gmsh), ("gmsh, HXT", gmsh(10), has_gmsh),
+    return [(OWN, own, True), ("gmsh, Delaunay", gmsh(1), has_gmsh), ("gmsh, HXT", gmsh(10), has_gmsh),
             ("netgen", netgen, PYTHON is not None)]
+
+
+OWN = "curvetet"
 
 
 class Comparison:
@@ -70,34 +74,45 @@ class Comparison:
         words = command(self.corpus.root / body, repr(diagonal / divisor), mesh, self.a.curvature)
         if words is None:
             return row | {"left_out": True}
-        mesh.unlink(missing_ok=True)
-        code, _, _, row["seconds"] = run(words, self.a.time_limit, self.a.memory_limit)
-        row["exit"] = code
-        if code == 0 and mesh.is_file():
-            row["valid"], row["failed"], _ = self.corpus.judge(body, mesh, stem)
-            _, out, _, _ = run([self.a.curvetet, "check", "--json", mesh], self.a.time_limit, self.a.memory_limit)
-            row["triangles"] = (read_json(out) or {}).get("counts", {}).get("triangles")
-            row["tets"] = (read_json(out) or {}).get("counts", {}).get("tets")
-        mesh.unlink(missing_ok=True)
+        self.mesh_and_judge(row, words, mesh, stem, [False] if name == OWN else [False, True])
+        if name == OWN and row["valid"] is not True:
+            apart = {"body": body, "divide": divisor, "program": name, "valid": False}
+            self.mesh_and_judge(apart, [*words, "--conformal", "off"], mesh, stem, [True])
+            row = apart if apart["valid"] is True else row
         return row
+
+    def mesh_and_judge(self, row, words, mesh, stem, in_parts):
+        """Asks the judge for the whole, or part by part, or both, until it passes."""
+        mesh.unlink(missing_ok=True)
+        row["exit"], _, _, row["seconds"] = run(words, self.a.time_limit, self.a.memory_limit)
+        if row["exit"] == 0 and mesh.is_file():
+            for row["parts"] in in_parts:
+                row["valid"], row["failed"], _ = self.corpus.judge(row["body"], mesh, stem, row["parts"])
+                if row["valid"] is True:
+                    break
+            _, out, _, _ = run([self.a.curvetet, "check", "--json", mesh], self.a.time_limit, self.a.memory_limit)
+            counts = (read_json(out) or {}).get("counts", {})
+            row["triangles"], row["tets"] = counts.get("triangles"), counts.get("tets")
+        mesh.unlink(missing_ok=True)
 
 
 def table(rows, divisors, names, missing):
     """Lines of markdown: for each program and size what became of the bodies."""
-    lines = ["| program | size | bodies | valid | no mesh | invalid | median seconds of the valid | triangles over curvetet's |",
-             "|---|---|---|---|---|---|---|---|"]
-    own = {(row["body"], row["divide"]): row for row in rows if row["program"] == "curvetet"}
+    lines = ["| program | size | bodies | valid | of these in parts | no mesh | invalid | median seconds of the valid | curvetet's triangles over its |",
+             "|---|---|---|---|---|---|---|---|---|"]
+    own = {(row["body"], row["divide"]): row for row in rows if row["program"] == OWN}
     for name in names:
         for divisor in divisors:
             here = [row for row in rows if row["program"] == name and row["divide"] == divisor and "left_out" not in row]
             valid = [row for row in here if row["valid"] is True]
             no_mesh = [row for row in here if "tets" not in row]
-            ratios = [row["triangles"] / own[row["body"], divisor]["triangles"] for row in valid
+            ratios = [own[row["body"], divisor]["triangles"] / row["triangles"] for row in valid
                       if own[row["body"], divisor]["valid"] is True and row["triangles"]]
             seconds = f"{statistics.median(row['seconds'] for row in valid):.2f}" if valid else "-"
             ratio = f"{statistics.median(ratios):.2f}, 95 %: {quantile(ratios, 0.95):.2f}" if ratios else "-"
             share = 100 * len(valid) / max(1, len(here))
-            lines.append(f"| {name} | D/{divisor:g} | {len(here)} | {len(valid)} ({share:.1f} %) | {len(no_mesh)} | "
+            lines.append(f"| {name} | D/{divisor:g} | {len(here)} | {len(valid)} ({share:.1f} %) | "
+                         f"{sum(row['parts'] for row in valid)} | {len(no_mesh)} | "
                          f"{len(here) - len(valid) - len(no_mesh)} | {seconds} | {ratio} |")
     lines += [f"\n{name} was not installed." for name in missing]
     return lines
@@ -125,6 +140,7 @@ def parse_arguments():
     parser = common_parser(__doc__)
     parser.add_argument("--page", type=pathlib.Path, help="page whose table, between <!-- table: begin --> and "
                         "<!-- table: end -->, is replaced")
+    parser.add_argument("--every", type=int, default=1, help="only each Nth body of the list")
     parser.add_argument("--again", action="append", default=[], metavar="PROGRAM", help="as curvetet, after a change")
     parser.set_defaults(divide="20", jobs=1, time_limit=120)  # more than one job spoils the times
     arguments = parser.parse_args()
@@ -136,7 +152,7 @@ def parse_arguments():
 def main():
     arguments = parse_arguments()
     arguments.out.mkdir(parents=True, exist_ok=True)
-    bodies, divisors = read_list(arguments.list), read_divisors(arguments.divide)
+    bodies, divisors = read_list(arguments.list)[::arguments.every], read_divisors(arguments.divide)
     there = [(name, command) for name, command, installed in programs(arguments) if installed]
     missing = [name for name, _, installed in programs(arguments) if not installed]
     comparison = Comparison(arguments)

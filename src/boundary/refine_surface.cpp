@@ -20,6 +20,9 @@ namespace {
 constexpr double kStraight = 0.9;
 constexpr double kFar = 0.05;
 
+/// A facet through the middle of a thin part is as near to the far side as to its own: which is nearer is chance.
+constexpr double kAsNear = 1.1;
+
 /// Cosine to the normal of a triangle that no flip nearby turns round again; one that leans less may be flipped.
 constexpr double kTurnedBack = -0.5;
 
@@ -195,28 +198,44 @@ double facing(const Conjoint& conjoint, FaceId face, TriangleId triangle) {
   return facing(*conjoint.model().faces[face].surface, mesh.chart, at.q, at.p);
 }
 
-std::optional<SurfaceFoot> foot_of(const Conjoint& conjoint, FaceId face, const std::array<NodeId, 3>& nodes) {
+namespace {
+
+/// What the searches from the same place of the chart and from the corners lead to.
+std::vector<SurfaceFoot> feet_of(const Conjoint& conjoint, FaceId face, const Places& places) {
+  const auto& [q, p] = places;
   const FaceMesh& mesh = conjoint.boundary().faces[face];
   const Surface& surface = *conjoint.model().faces[face].surface;
-  const auto [q, p] = places_of(conjoint, face, nodes);
   const Vec3 centroid = (1.0 / 3) * (p[0] + p[1] + p[2]);
-  std::optional<SurfaceFoot> foot;
+  std::vector<SurfaceFoot> feet;
   for (const Vec2 guess : {(1.0 / 3) * (q[0] + q[1] + q[2]), q[0], q[1], q[2]}) {
     const auto found = surface.project(centroid, mesh.chart.to_uv(guess));
     if (!found) continue;
     // Beyond its border the face's surface may turn back: the closest point of the face is on the border then.
     const Vec2 uv = within_box(conjoint.model().faces[face], *found);
-    const double away = distance(surface.value(uv), centroid);
-    if (!foot || away < foot->distance) foot = SurfaceFoot{uv, away};
+    feet.push_back({uv, distance(surface.value(uv), centroid)});
   }
-  return foot;
+  std::sort(feet.begin(), feet.end(),
+            [](const SurfaceFoot& a, const SurfaceFoot& b) { return a.distance < b.distance; });
+  return feet;
+}
+
+}  // namespace
+
+std::optional<SurfaceFoot> foot_of(const Conjoint& conjoint, FaceId face, const std::array<NodeId, 3>& nodes) {
+  const std::vector<SurfaceFoot> feet = feet_of(conjoint, face, places_of(conjoint, face, nodes));
+  return feet.empty() ? std::nullopt : std::optional(feet.front());
 }
 
 double facing_at_foot(const Conjoint& conjoint, FaceId face, const std::array<NodeId, 3>& nodes) {
-  const auto foot = foot_of(conjoint, face, nodes);
-  const std::array<Vec3, 3> p = places_of(conjoint, face, nodes).p;
-  const Surface& surface = *conjoint.model().faces[face].surface;
-  return foot ? dot(normalized(cross(p[1] - p[0], p[2] - p[0])), surface.normal(foot->uv)) : 1;
+  const Places places = places_of(conjoint, face, nodes);
+  const std::array<Vec3, 3>& p = places.p;
+  const Vec3 normal = normalized(cross(p[1] - p[0], p[2] - p[0]));
+  const std::vector<SurfaceFoot> feet = feet_of(conjoint, face, places);
+  double least = 1;
+  for (const SurfaceFoot& foot : feet)
+    if (foot.distance <= kAsNear * feet.front().distance)
+      least = std::min(least, dot(normal, conjoint.model().faces[face].surface->normal(foot.uv)));
+  return least;
 }
 
 std::vector<std::uint32_t> folded_facets(const Conjoint& conjoint, const std::vector<SurfaceTriangle>& triangles) {
