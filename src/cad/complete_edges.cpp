@@ -60,12 +60,11 @@ class EdgeCompleter {
     const gp_Pnt first = curve->Value(low), last = curve->Value(high);
     const bool before = misses(start, first), after = misses(end, last);
     if (!before && !after) return {};
-    if (before &&
-        !(goes_on(*curve, low, BRep_Tool::Pnt(start), -1) && lies_on(BRep_Tool::Pnt(start), first, faces, tolerance_)))
-      return {};
-    if (after &&
-        !(goes_on(*curve, high, BRep_Tool::Pnt(end), 1) && lies_on(last, BRep_Tool::Pnt(end), faces, tolerance_)))
-      return {};
+    const auto can_join = [&](const TopoDS_Vertex& vertex, double parameter, int sense) {
+      const gp_Pnt to = BRep_Tool::Pnt(vertex);
+      return goes_on(*curve, parameter, to, sense) && lies_on(curve->Value(parameter), to, faces, tolerance_);
+    };
+    if ((before && !can_join(start, low, -1)) || (after && !can_join(end, high, 1))) return {};
 
     const TopoDS_Vertex from = before ? vertex_at(first) : start, to = after ? vertex_at(last) : end;
     TopoDS_Wire wire;
