@@ -46,7 +46,6 @@ std::optional<Error> confirm_crossing(const CadBody& body, const std::vector<std
                                       const std::string& source) {
   const QuietMessages quiet;
   Error error{ErrorCode::self_intersection, "the CAD kernel finds that faces of " + source + " cross"};
-  error.hint = "mend the body: these faces must not cross";
   for (const std::uint32_t id : faces) error.entities.push_back("face " + std::to_string(id));
   const Result<bool> found = guarded(ErrorCode::internal, "cannot analyze the faces",
                                      [&]() -> Result<bool> { return interfere(copy_of_faces(body, faces)); });

@@ -120,7 +120,7 @@ class BodyRun {
     const auto error = report_.errors.begin() + (failure - body_.failures.begin());
     error->code = again.error().code;
     error->message += "; " + again.error().message;
-    error->hint = again.error().hint;
+    error->hint = crossing_hint(*failure, model_);
     std::rotate(report_.errors.begin(), error, error + 1);
     return *failure;
   }

@@ -10,6 +10,7 @@
 #include <set>
 
 #include "geometry/check.h"
+#include "geometry/parts.h"
 #include "pipeline/assemble.h"
 
 namespace curvetet {
@@ -284,6 +285,21 @@ std::map<std::string, std::string> entities_in_words(const Model& model) {
   return words;
 }
 
+std::string crossing_hint(const RecoveryFailure& failure, const Model& model) {
+  const std::vector<std::vector<SolidId>> parts = parts_of(model);
+  const auto part_of = [&](FaceId f) {
+    const ModelFace& face = model.faces[f];
+    const SolidId solid = face.front.valid() ? face.front : face.back;
+    return std::find_if(parts.begin(), parts.end(), [&](const std::vector<SolidId>& part) {
+      return std::find(part.begin(), part.end(), solid) != part.end();
+    });
+  };
+  const bool of_two = std::any_of(failure.faces.begin(), failure.faces.end(),
+                                  [&](FaceId f) { return part_of(f) != part_of(failure.faces.front()); });
+  return of_two ? "these faces of two solids must not cross: mend the solids, or mesh them apart with --conformal off"
+                : "mend the body: these faces must not cross";
+}
+
 Error to_error(const RecoveryFailure& failure, const Model& model, const Settings& settings,
                const std::optional<FaceGap>& gap) {
   Error error;
@@ -312,7 +328,7 @@ Error to_error(const RecoveryFailure& failure, const Model& model, const Setting
                                  off->what, out(off->amount), settings.unit);
     error.hint = "repair it in the CAD system, or export with a tighter tolerance";
   } else if (failure.proved) {
-    error.hint = "mend the body: these faces must not cross";
+    error.hint = crossing_hint(failure, model);
   } else if (failure.size > 0) {
     error.hint = fmt::format("a size of {:.3g} {} there may do:{}", out(failure.size), settings.unit, sizes);
   }

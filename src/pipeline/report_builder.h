@@ -26,6 +26,8 @@ void report_fineness(Report& report, const Model& model, const Settings& setting
                      const BodyMesh& mesh);
 void report_reductions(Report& report, const Model& model, const Settings& settings, const SizeField& sizes);
 void report_mesh(Report& report, const Mesh& mesh, const ValidationReport& validation);
+/// What to do about faces that cross whatever the size.
+std::string crossing_hint(const RecoveryFailure& failure, const Model& model);
 /// A failure of recovery as an error in the user's terms; `gap`: how close its two faces come, if that is known.
 Error to_error(const RecoveryFailure& failure, const Model& model, const Settings& settings,
                const std::optional<FaceGap>& gap = std::nullopt);

@@ -30,5 +30,24 @@ TEST(RecoveryErrors, AnEdgeOffItsFaceIsTheInputsFaultBelowItsDistance) {
   EXPECT_EQ(to_error(failure, model, settings).code, ErrorCode::recovery_failed);
 }
 
+TEST(RecoveryErrors, FacesOfTwoSolidsThatCrossMayBeMeshedApart) {
+  const auto hint = [](const Model& model, FaceId a, FaceId b) {
+    RecoveryFailure failure;
+    failure.faces = {a, b};
+    return crossing_hint(failure, model);
+  };
+  const auto offers = [](const std::string& words) { return words.find("--conformal off") != std::string::npos; };
+  const Model joined = test::make_boxes({1, 1}, 1, 1);  // meshed together even with --conformal off
+  Model apart = test::make_shell(3, 2);
+  EXPECT_FALSE(offers(hint(apart, FaceId(0), FaceId(1))));
+  const SolidId second = apart.solids.push_back(apart.solids[SolidId(0)]);
+  apart.faces[FaceId(1)].front = apart.faces[FaceId(1)].back = SolidId();
+  (apart.faces[FaceId(1)].reversed ? apart.faces[FaceId(1)].front : apart.faces[FaceId(1)].back) = second;
+  apart.solids[SolidId(0)].faces = {FaceId(0)};
+  apart.solids[second].faces = {FaceId(1)};
+  EXPECT_TRUE(offers(hint(apart, FaceId(0), FaceId(1))));
+  for (std::size_t f = 1; f < joined.faces.size(); ++f) EXPECT_FALSE(offers(hint(joined, FaceId(0), FaceId(f))));
+}
+
 }  // namespace
 }  // namespace curvetet
