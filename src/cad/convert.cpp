@@ -110,9 +110,9 @@ class Converter {
       shells = shells_of(s);
       const std::string solid = entity("solid", solid_label(s));
       if (shells.empty()) {
-        notes_.push_back({solid, "has no faces and is left out"});
+        notes_.push_back({solid, "has no faces and is left out", true});
       } else if (without_volume(shells)) {
-        notes_.push_back({solid, "has no volume and is left out"});
+        notes_.push_back({solid, "has no volume and is left out", true});
         flat = Error{ErrorCode::zero_size, solid + " of " + source_ + " has no volume", {solid}};
         shells.clear();
       } else {
@@ -202,7 +202,9 @@ class Converter {
     model_.file_unit = body_.file_unit;
     model_.healing = notes_;
     model_.suppressed = body_.suppressed;
-    if (ignored_ > 0) note("file", std::to_string(ignored_) + " faces that belong to no solid are left out");
+    if (ignored_ > 0)
+      model_.healing.push_back(
+          {"file", std::to_string(ignored_) + " faces that belong to no solid are left out", true});
     make_vertices();
     make_edges();
     make_faces();

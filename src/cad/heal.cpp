@@ -169,7 +169,7 @@ Status leave_apart(Attempt& best, const std::string& source, Conformal conformal
                  {},
                  "imprint the solids in the CAD system, or ask for less than strict conformity"};
   }
-  const HealingNote note{"file", why + " (--conformal off meshes them apart)"};
+  const HealingNote note{"file", why + " (--conformal off meshes them apart)", true};
   best.body.notes.push_back(note);
   best.model.value().healing.push_back(note);
   return Done{};
@@ -229,7 +229,8 @@ Result<Model> heal_and_convert(CadBody& body, const std::string& source, const H
         CadBody repaired = best.body;
         repair(repaired);
         Attempt next = attempt(std::move(repaired), source);
-        if (next.bad < best.bad) best = std::move(next);
+        // A solid that vanishes takes its faults along.
+        if (next.bad < best.bad && next.body.solids.size() >= best.body.solids.size()) best = std::move(next);
         if (best.bad < kSerious) break;
       }
     }

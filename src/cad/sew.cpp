@@ -236,7 +236,7 @@ SewingResult sew(CadBody& body) {
                 [&](const TopoDS_Shape& part) { return sewn_image(*best.sewing, part); });
   body.notes.push_back({"file", "faces sewn into " + std::to_string(body.solids.size()) + " solids"});
   if (best.open_shells > 0) {
-    body.notes.push_back({"file", std::to_string(best.open_shells) + " shells stay open and are left out"});
+    body.notes.push_back({"file", std::to_string(best.open_shells) + " shells stay open and are left out", true});
   }
   return result;
 }

@@ -15,6 +15,7 @@ namespace curvetet {
 namespace {
 
 constexpr const char* kGreeting = "curvetet-cad 0.1.0";
+constexpr const char *kNote = "note", *kWarning = "warning";  // kinds of lines
 
 std::string labels_path(const std::string& out_path) { return out_path + ".labels"; }
 
@@ -117,7 +118,7 @@ void read_error(const Fields& fields, Error& error) {
 void write_labels(const CadBody& body, std::ostream& out) {
   out << "unit\t" << escaped(body.unit) << "\nfile unit\t" << escaped(body.file_unit) << '\n';
   for (const HealingNote& note : body.notes)
-    out << "note\t" << escaped(note.entity) << '\t' << escaped(note.what) << '\n';
+    out << (note.is_warning ? kWarning : kNote) << '\t' << escaped(note.entity) << '\t' << escaped(note.what) << '\n';
   for (const auto& [type, id] : body.last_ids) out << "last\t" << type_name(type) << '\t' << id << '\n';
   for (const SuppressedDetail& detail : body.suppressed) write_suppressed(out, detail);
   for (const TopAbs_ShapeEnum type : kLabelled) {
@@ -148,7 +149,7 @@ Parsed parse(std::istream& in) {
     if (kind == "end") parsed.complete = true;
     if (kind == "unit") parsed.body.unit = fields.at(1);
     if (kind == "file unit") parsed.body.file_unit = fields.at(1);
-    if (kind == "note") parsed.body.notes.push_back({fields.at(1), fields.at(2)});
+    if (kind == kNote || kind == kWarning) parsed.body.notes.push_back({fields.at(1), fields.at(2), kind == kWarning});
     if (kind == "suppressed") parsed.body.suppressed.push_back(read_suppressed(fields));
     if (kind == "area") parsed.body.measures.face_areas.push_back(number(fields.at(1)));
     if (kind == "volume") parsed.body.measures.shell_volumes.push_back(number(fields.at(1)));

@@ -171,7 +171,8 @@ std::string to_words(const Model& model, const Summary& summary) {
                     detail.label.cad_id, detail.label.name.empty() ? "" : "  " + detail.label.name,
                     detail.kind == SuppressedDetail::Kind::edge ? "length" : "width", detail.size, p.x, p.y, p.z));
   }
-  for (const HealingNote& note : model.healing) add("note: " + note.entity + ": " + note.what);
+  for (const HealingNote& note : model.healing)
+    add((note.is_warning ? "warning: " : "note: ") + note.entity + ": " + note.what);
   return out;
 }
 

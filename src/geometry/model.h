@@ -96,8 +96,9 @@ struct ModelSolid {
 
 /// One change that healing made.
 struct HealingNote {
-  std::string entity;  ///< "face 12"
-  std::string what;    ///< "sewn", "wire reordered", ...
+  std::string entity;       ///< "face 12"
+  std::string what;         ///< "sewn", "wire reordered", ...
+  bool is_warning = false;  ///< the mesh will lack something that the file has or that it should have
 };
 
 /// A detail of the input that the body lacks on request. Its size (length of an edge, width of a face) and place are

@@ -143,7 +143,10 @@ void report_input(Report& report, const Model& model, const Settings& settings, 
   report.file_unit = model.file_unit;
   report.mode = options.recovery == RecoveryMode::paper ? "paper" : "conjoint";
   report.options_json = options_json(options, settings, model);
-  for (const HealingNote& note : model.healing) report.healing.push_back(note.entity + ": " + note.what);
+  for (const HealingNote& note : model.healing) {
+    report.healing.push_back(note.entity + ": " + note.what);
+    if (note.is_warning) report.warnings.push_back(report.healing.back());
+  }
   for (const SuppressedDetail& detail : model.suppressed) {
     const Vec3 p = settings.unit_scale * detail.place;
     report.suppressed.push_back({name(detail.kind),

@@ -272,6 +272,22 @@ TEST(Repair, AnEdgeThatGoesTheWrongWayIsRefused) {
   EXPECT_EQ(model.error().code, ErrorCode::bad_face);
 }
 
+/// A solid that lacks a face, beside a sound one: repairs make a loose shell of it, which has no faults.
+TEST(Repair, ASolidThatCannotBeClosedIsAnErrorThoughAnotherIsSound) {
+  const TopoDS_Shape box = BRepPrimAPI_MakeBox(1, 1, 1).Shape();
+  TopoDS_Shell shell;
+  TopoDS_Solid solid;
+  const BRep_Builder builder;
+  builder.MakeShell(shell);
+  TopExp_Explorer faces(box, TopAbs_FACE);
+  for (faces.Next(); faces.More(); faces.Next()) builder.Add(shell, faces.Current());
+  builder.MakeSolid(solid);
+  builder.Add(solid, shell);
+  const Result<Model> model = convert(compound_of({solid, BRepPrimAPI_MakeBox(gp_Pnt(3, 0, 0), 1, 1, 1).Shape()}));
+  ASSERT_FALSE(model);
+  EXPECT_EQ(model.error().code, ErrorCode::open_shell) << model.error().message;
+}
+
 TEST(Repair, ABodyThatTouchesItselfAlongAnEdgeIsSewn) {
   const Result<Model> model = convert(bar_that_touches_itself());
   ASSERT_TRUE(model) << model.error().message;

@@ -430,6 +430,13 @@ class Assemblies(CommandLineTest):
             notes = report["input"]["healing"]
             self.assertTrue(any("coincides" in note or "split" in note for note in notes), notes)
 
+    def test_faces_of_no_solid_are_left_out_with_a_warning(self):
+        report, _ = self.mesh_and_check("leftover.brep")
+        left_out = [warning for warning in report["warnings"] if "left out" in warning]
+        self.assertEqual(left_out, ["file: 5 faces that belong to no solid are left out"])
+        said = self.expect(0, "mesh", BODIES / "leftover.brep", "-o", self.folder / "out.msh", "--size", "3").stdout
+        self.assertIn(left_out[0], said)
+
     def test_apart_each_has_nodes_of_its_own(self):
         joined, _ = self.mesh_and_check("touching.brep")
         apart, checked = self.mesh_and_check("touching.brep", "--conformal", "off")

@@ -65,6 +65,16 @@ TopoDS_Shape three_boxes(double second) {
   return boxes;
 }
 
+/// A box, and faces beside it that close around nothing.
+TopoDS_Shape box_and_open_shell() {
+  TopoDS_Compound both;
+  BRep_Builder builder;
+  builder.MakeCompound(both);
+  builder.Add(both, open_shell());
+  builder.Add(both, BRepPrimAPI_MakeBox(gp_Pnt(20, 0, 0), 10, 10, 10).Shape());
+  return both;
+}
+
 TopoDS_Shape crossed() {
   TopoDS_Solid solid;
   BRep_Builder builder;
@@ -92,6 +102,7 @@ int main(int argc, char** argv) {
                     write_brep(BRepPrimAPI_MakeSphere(5).Shape(), folder + "ball.brep") &&
                     write_brep(three_boxes(10), folder + "touching.brep") &&
                     write_brep(three_boxes(7), folder + "overlapping.brep") &&
+                    write_brep(box_and_open_shell(), folder + "leftover.brep") &&
                     write_brep(crossed(), folder + "crossed.brep") && write_bad_bodies(folder);
   return done ? 0 : 1;
 }
