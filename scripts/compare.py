@@ -105,7 +105,7 @@ def table(rows, divisors, names, missing):
         for divisor in divisors:
             here = [row for row in rows if row["program"] == name and row["divide"] == divisor and "left_out" not in row]
             valid = [row for row in here if row["valid"] is True]
-            no_mesh = [row for row in here if "tets" not in row]
+            no_mesh = [row for row in here if not row.get("tets")]
             ratios = [own[row["body"], divisor]["triangles"] / row["triangles"] for row in valid
                       if own[row["body"], divisor]["valid"] is True and row["triangles"]]
             seconds = f"{statistics.median(row['seconds'] for row in valid):.2f}" if valid else "-"
