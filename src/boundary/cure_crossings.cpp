@@ -24,6 +24,11 @@ constexpr std::size_t kPointsPerPair = 8;
 // More crossings than this are no thin wall but a surface mesh gone wrong.
 constexpr std::size_t kPairsPerTriangle = 4;
 
+// The surface near a facet is looked at where the mean normal is off by more than 26 degrees, or the facet by this
+// share of its longest edge.
+constexpr double kStraight = 0.9;
+constexpr double kFar = 0.05;
+
 // A facet lies on its face where it is nearer than this share of its longest edge, and the surface below is flat: the
 // normals of the corners' places are within 60 degrees of that below its middle. A coarse facet along a thin ring is as
 // near to it. Where points have not made crossings and folds fewer for some rounds, bent surfaces are thinned, too.
@@ -55,19 +60,19 @@ class CrossingCure {
       }
       context_.log(LogLevel::debug, fmt::format("crossings, round {}: {} pairs of {} triangles", result_.rounds,
                                                 pairs.size(), triangles_.size()));
-      const std::vector<std::uint32_t> folds = folded_facets(conjoint_, triangles_);
+      const std::vector<std::uint32_t> folds = find_folds();
       if (result_.rounds == 0) result_.first_folds = folds.size();
       if (pairs.empty() && folds.empty()) return result_;
       count_stalled(pairs.size() + folds.size());
       deviations_.assign(triangles_.size(), std::nullopt);
-      rounds_through_ = any_passes_through(pairs) ? rounds_through_ + 1 : 0;
+      const bool any_through = std::any_of(pairs.begin(), pairs.end(), [this](const Pair& p) { return through(p); });
+      rounds_through_ = any_through ? rounds_through_ + 1 : 0;
       const bool hopeless = faces_cross() || result_.rounds == options_.rounds ||
                             static_cast<double>(result_.points) > budget_ ||
                             pairs.size() >= kPairsPerTriangle * triangles_.size();
       const bool progress = !hopeless && (thin_out(pairs, folds) || (refine(pairs) | unfold(folds)));
       if (!progress) {
-        for (const auto& [i, j] : pairs) report(i, j, "facets of the surface mesh cross");
-        for (std::uint32_t i : folds) report(i, i, "a facet of the surface mesh is folded against its face");
+        report_all(pairs, folds);
         return result_;
       }
     }
@@ -75,9 +80,11 @@ class CrossingCure {
   }
 
  private:
+  using Pair = std::pair<std::uint32_t, std::uint32_t>;  ///< of triangles that cross
+
   /// A legal cure of a thin wall may need many times the points of the first mesh: as many as triangles of the floor's
   /// spacing cover what crosses. Slivers have no area, so that some points per pair and triangle are granted, too.
-  double budget_for(const std::vector<std::pair<std::uint32_t, std::uint32_t>>& pairs) const {
+  double budget_for(const std::vector<Pair>& pairs) const {
     std::set<std::uint32_t> crossing;
     for (const auto& [i, j] : pairs) crossing.insert({i, j});
     double area = 0;
@@ -99,11 +106,11 @@ class CrossingCure {
     fewest_ = std::min(fewest_, left);
   }
 
-  bool any_passes_through(const std::vector<std::pair<std::uint32_t, std::uint32_t>>& pairs) {
-    return std::any_of(pairs.begin(), pairs.end(), [this](const auto& pair) {
-      const double height = kHeights * (deviation_of(pair.first) + deviation_of(pair.second)) + 8 * kGrid;
-      return passes_through(pair.first, pair.second, height) || passes_through(pair.second, pair.first, height);
-    });
+  /// Do two facets go through each other by more than they leave their faces?
+  bool through(const Pair& pair) {
+    const auto [i, j] = pair;
+    const double height = kHeights * (deviation_of(i) + deviation_of(j)) + 8 * kGrid;
+    return passes_through(i, j, height) || passes_through(j, i, height);
   }
 
   bool faces_cross() const { return rounds_through_ >= kRoundsThrough; }
@@ -151,8 +158,7 @@ class CrossingCure {
 
   /// Takes out nodes where a face overlaps itself in one sheet: facets that lie on it already do so because its
   /// parameters are sheared, and more points would only make more such facets.
-  bool thin_out(const std::vector<std::pair<std::uint32_t, std::uint32_t>>& pairs,
-                const std::vector<std::uint32_t>& folds) {
+  bool thin_out(const std::vector<Pair>& pairs, const std::vector<std::uint32_t>& folds) {
     std::map<std::uint32_t, Lying> known;
     const auto lying_of = [&](std::uint32_t i) {
       const auto [at, is_new] = known.try_emplace(i);
@@ -184,7 +190,7 @@ class CrossingCure {
     return any;
   }
 
-  bool refine(const std::vector<std::pair<std::uint32_t, std::uint32_t>>& pairs) {
+  bool refine(const std::vector<Pair>& pairs) {
     bool any = false;
     for (const auto& [i, j] : pairs) {
       if (context_.should_stop()) return any;
@@ -195,6 +201,20 @@ class CrossingCure {
       if (refine_one(a_first ? a : b, std::max(da, db)) || refine_one(a_first ? b : a, std::min(da, db))) any = true;
     }
     return any;
+  }
+
+  std::vector<std::uint32_t> find_folds() const {
+    std::vector<std::uint32_t> folds;
+    for (std::uint32_t i = 0; i < triangles_.size(); ++i) {
+      const SurfaceTriangle& t = triangles_[i];
+      double cosine = facing(conjoint_, t.face, t.triangle);
+      if (cosine < kStraight ||
+          deviation(conjoint_, t.face, t.triangle) > kFar * longest_edge(conjoint_.vertices(), t.vertices))
+        cosine = std::min(
+            cosine, facing_at_foot(conjoint_, t.face, conjoint_.boundary().faces[t.face].triangle(t.triangle).node));
+      if (cosine < kFolded) folds.push_back(i);
+    }
+    return folds;
   }
 
   bool unfold(const std::vector<std::uint32_t>& folds) {
@@ -250,6 +270,14 @@ class CrossingCure {
     return done.ok();
   }
 
+  /// Where faces cross, that is the failure, whatever else is left.
+  void report_all(const std::vector<Pair>& pairs, const std::vector<std::uint32_t>& folds) {
+    for (const Pair& pair : pairs)
+      if (!faces_cross() || through(pair)) report(pair.first, pair.second, "facets of the surface mesh cross");
+    if (faces_cross()) return;
+    for (std::uint32_t i : folds) report(i, i, "a facet of the surface mesh is folded against its face");
+  }
+
   void report(std::uint32_t i, std::uint32_t j, const char* what) {
     const SurfaceTriangle &a = triangles_[i], &b = triangles_[j];
     if (!reported_.insert({std::min(a.face, b.face), std::max(a.face, b.face)}).second) return;
@@ -262,7 +290,7 @@ class CrossingCure {
       shortest = std::min(shortest, distance(p, conjoint_.vertices().position(a.vertices[(k + 1) % 3])));
     }
     failure.crossing = i != j;
-    failure.size = failure.crossing && faces_cross() ? 0 : 0.5 * shortest;
+    failure.size = faces_cross() ? 0 : 0.5 * shortest;
     failure.proved = i != j && deviation_of(i) <= 8 * kGrid && deviation_of(j) <= 8 * kGrid;
     failure.what = failure.proved ? "flat facets that lie on their faces cross: the body crosses itself" : what;
     result_.failures.push_back(failure);

@@ -15,14 +15,6 @@ namespace curvetet {
 
 namespace {
 
-// The surface near a facet is looked at where the mean normal is off by more than 26 degrees, or the facet by this
-// share of its longest edge.
-constexpr double kStraight = 0.9;
-constexpr double kFar = 0.05;
-
-/// A facet through the middle of a thin part is as near to the far side as to its own: which is nearer is chance.
-constexpr double kAsNear = 1.1;
-
 /// Cosine to the normal of a triangle that no flip nearby turns round again; one that leans less may be flipped.
 constexpr double kTurnedBack = -0.5;
 
@@ -198,61 +190,28 @@ double facing(const Conjoint& conjoint, FaceId face, TriangleId triangle) {
   return facing(*conjoint.model().faces[face].surface, mesh.chart, at.q, at.p);
 }
 
-namespace {
-
-/// What the searches from the same place of the chart and from the corners lead to.
-std::vector<SurfaceFoot> feet_of(const Conjoint& conjoint, FaceId face, const Places& places) {
-  const auto& [q, p] = places;
+std::optional<SurfaceFoot> foot_of(const Conjoint& conjoint, FaceId face, const std::array<NodeId, 3>& nodes) {
   const FaceMesh& mesh = conjoint.boundary().faces[face];
   const Surface& surface = *conjoint.model().faces[face].surface;
+  const auto [q, p] = places_of(conjoint, face, nodes);
   const Vec3 centroid = (1.0 / 3) * (p[0] + p[1] + p[2]);
-  std::vector<SurfaceFoot> feet;
+  std::optional<SurfaceFoot> foot;
   for (const Vec2 guess : {(1.0 / 3) * (q[0] + q[1] + q[2]), q[0], q[1], q[2]}) {
     const auto found = surface.project(centroid, mesh.chart.to_uv(guess));
     if (!found) continue;
     // Beyond its border the face's surface may turn back: the closest point of the face is on the border then.
     const Vec2 uv = within_box(conjoint.model().faces[face], *found);
-    feet.push_back({uv, distance(surface.value(uv), centroid)});
+    const double away = distance(surface.value(uv), centroid);
+    if (!foot || away < foot->distance) foot = SurfaceFoot{uv, away};
   }
-  std::sort(feet.begin(), feet.end(),
-            [](const SurfaceFoot& a, const SurfaceFoot& b) { return a.distance < b.distance; });
-  return feet;
-}
-
-}  // namespace
-
-std::optional<SurfaceFoot> foot_of(const Conjoint& conjoint, FaceId face, const std::array<NodeId, 3>& nodes) {
-  const std::vector<SurfaceFoot> feet = feet_of(conjoint, face, places_of(conjoint, face, nodes));
-  return feet.empty() ? std::nullopt : std::optional(feet.front());
+  return foot;
 }
 
 double facing_at_foot(const Conjoint& conjoint, FaceId face, const std::array<NodeId, 3>& nodes) {
-  const Places places = places_of(conjoint, face, nodes);
-  const std::array<Vec3, 3>& p = places.p;
-  const Vec3 normal = normalized(cross(p[1] - p[0], p[2] - p[0]));
-  const std::vector<SurfaceFoot> feet = feet_of(conjoint, face, places);
-  double least = 1;
-  for (const SurfaceFoot& foot : feet)
-    if (foot.distance <= kAsNear * feet.front().distance)
-      least = std::min(least, dot(normal, conjoint.model().faces[face].surface->normal(foot.uv)));
-  return least;
-}
-
-std::vector<std::uint32_t> folded_facets(const Conjoint& conjoint, const std::vector<SurfaceTriangle>& triangles) {
-  std::vector<std::uint32_t> folds;
-  for (std::uint32_t i = 0; i < triangles.size(); ++i) {
-    const SurfaceTriangle& t = triangles[i];
-    double cosine = facing(conjoint, t.face, t.triangle);
-    const auto is_far = [&] {
-      return deviation(conjoint, t.face, t.triangle) > kFar * longest_edge(conjoint.vertices(), t.vertices);
-    };
-    if (cosine < kStraight || is_far()) {
-      const FaceMesh& mesh = conjoint.boundary().faces[t.face];
-      cosine = std::min(cosine, facing_at_foot(conjoint, t.face, mesh.triangle(t.triangle).node));
-    }
-    if (cosine < kFolded) folds.push_back(i);
-  }
-  return folds;
+  const auto foot = foot_of(conjoint, face, nodes);
+  const std::array<Vec3, 3> p = places_of(conjoint, face, nodes).p;
+  const Surface& surface = *conjoint.model().faces[face].surface;
+  return foot ? dot(normalized(cross(p[1] - p[0], p[2] - p[0])), surface.normal(foot->uv)) : 1;
 }
 
 double segment_deviation(const Conjoint& conjoint, EdgeId edge, VertexId a, VertexId b) {

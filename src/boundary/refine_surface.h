@@ -38,15 +38,11 @@ struct SurfaceFoot {
   Vec2 uv;  ///< within the box of the face's domain
   double distance = 0;
 };
-/// Where the surface is nearest to a triangle's centroid, searched from the same place of the chart and from the
-/// corners, as the final check does; empty if no such place is found.
+/// Where the face is nearest to a triangle's centroid, searched from the same place of the chart and from the corners;
+/// empty if no such place is found.
 std::optional<SurfaceFoot> foot_of(const Conjoint& conjoint, FaceId face, const std::array<NodeId, 3>& nodes);
-/// Cosine of the angle between a triangle's normal and the surface's at its foot, or at another nearly as near if that
-/// is less; 1 without a foot.
+/// Cosine of the angle between a triangle's normal and the surface's at its foot; 1 without a foot.
 double facing_at_foot(const Conjoint& conjoint, FaceId face, const std::array<NodeId, 3>& nodes);
-/// Which of the triangles are folded against their faces (indices, rising): at the same place of the chart, or, where a
-/// facet is tilted or off its face, at its foot.
-std::vector<std::uint32_t> folded_facets(const Conjoint& conjoint, const std::vector<SurfaceTriangle>& triangles);
 /// Distance from the middle of a segment to the curve at the middle parameter.
 double segment_deviation(const Conjoint& conjoint, EdgeId edge, VertexId a, VertexId b);
 

@@ -51,7 +51,7 @@ class EdgeCompleter {
 
   /// The edge between the ends of its curve, and straight edges from there to its vertices, as a wire; null if it needs
   /// none or cannot have them.
-  TopoDS_Shape completed(const TopoDS_Edge& edge, const TopTools_ListOfShape& faces) {
+  TopoDS_Shape completed(const TopoDS_Edge& edge, const TopTools_ListOfShape& faces) const {
     TopoDS_Vertex start, end;
     TopExp::Vertices(edge, start, end);
     Standard_Real low = 0, high = 0;
@@ -70,14 +70,11 @@ class EdgeCompleter {
     TopoDS_Wire wire;
     const BRep_Builder builder;
     builder.MakeWire(wire);
-    if (before) builder.Add(wire, straight(tight(start), from, faces));
+    if (before) builder.Add(wire, straight(start, from, faces));
     builder.Add(wire, between(edge, from, to));
-    if (after) builder.Add(wire, straight(to, tight(end), faces));
+    if (after) builder.Add(wire, straight(to, end, faces));
     return wire;
   }
-
-  /// Vertices, and what stands for them.
-  const TopTools_DataMapOfShapeShape& vertices() const { return vertices_; }
 
  private:
   bool misses(const TopoDS_Vertex& vertex, const gp_Pnt& end) const {
@@ -88,14 +85,6 @@ class EdgeCompleter {
     TopoDS_Vertex made;
     BRep_Builder().MakeVertex(made, point, tolerance_);
     return made;
-  }
-
-  /// The vertex, or one at the same point where its tolerance was raised to span the gap.
-  TopoDS_Vertex tight(const TopoDS_Vertex& vertex) {
-    if (BRep_Tool::Tolerance(vertex) <= least_) return vertex;
-    const TopoDS_Shape key = vertex.Oriented(TopAbs_FORWARD);
-    if (!vertices_.IsBound(key)) vertices_.Bind(key, vertex_at(BRep_Tool::Pnt(vertex)));
-    return TopoDS::Vertex(vertices_.Find(key));
   }
 
   static TopoDS_Edge between(const TopoDS_Edge& edge, const TopoDS_Vertex& from, const TopoDS_Vertex& to) {
@@ -114,7 +103,6 @@ class EdgeCompleter {
   }
 
   double least_, tolerance_;
-  TopTools_DataMapOfShapeShape vertices_;
 };
 
 }  // namespace
@@ -124,7 +112,7 @@ bool complete_edges(CadBody& body, double least, double tolerance) {
   TopExp::MapShapesAndUniqueAncestors(body.shape, TopAbs_EDGE, TopAbs_FACE, faces);
   const TopTools_IndexedMapOfShape edges = sub_shapes(body.shape, TopAbs_EDGE);
   const Handle(BRepTools_ReShape) change = new BRepTools_ReShape;
-  EdgeCompleter completer(least, tolerance);
+  const EdgeCompleter completer(least, tolerance);
   bool any = false;
   for (int e = 1; e <= edges.Extent(); ++e) {
     const TopoDS_Edge edge = TopoDS::Edge(edges(e).Oriented(TopAbs_FORWARD));
@@ -136,8 +124,6 @@ bool complete_edges(CadBody& body, double least, double tolerance) {
     any = true;
   }
   if (!any) return false;
-  for (TopTools_DataMapOfShapeShape::Iterator v(completer.vertices()); v.More(); v.Next())
-    change->Replace(v.Key(), v.Value());
   replace_shape(body, change->Apply(body.shape), [&](const TopoDS_Shape& part) { return change->Value(part); });
   return true;
 }

@@ -6,9 +6,8 @@
 namespace curvetet {
 
 /// Joins each edge whose curve ends farther than `least` from the edge's vertex to it by a straight edge, where that
-/// lies on all faces of the edge within `tolerance` (both in the unit of the shape, `least` above `tolerance`). Where
-/// the vertex's tolerance was raised to span the gap, an exact one takes its place. Notes each edge that is joined;
-/// returns whether there was one.
+/// lies on all faces of the edge within `tolerance` (both in the unit of the shape, `least` above `tolerance`) and does
+/// not turn back along the edge. Notes each edge that is joined; returns whether there was one.
 bool complete_edges(CadBody& body, double least, double tolerance);
 
 }  // namespace curvetet

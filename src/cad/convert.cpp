@@ -92,7 +92,9 @@ class Converter {
   }
 
  private:
-  void note(const std::string& entity, const std::string& what) { model_.healing.push_back({entity, what}); }
+  void note(const std::string& entity, const std::string& what, bool is_warning = false) {
+    model_.healing.push_back({entity, what, is_warning});
+  }
   static std::string entity(const char* kind, const Label& label) {
     return kind + std::string(" ") + std::to_string(label.cad_id);
   }
@@ -202,9 +204,7 @@ class Converter {
     model_.file_unit = body_.file_unit;
     model_.healing = notes_;
     model_.suppressed = body_.suppressed;
-    if (ignored_ > 0)
-      model_.healing.push_back(
-          {"file", std::to_string(ignored_) + " faces that belong to no solid are left out", true});
+    if (ignored_ > 0) note("file", std::to_string(ignored_) + " faces that belong to no solid are left out", true);
     make_vertices();
     make_edges();
     make_faces();

@@ -72,6 +72,9 @@ std::optional<Error> close_solids(CadBody& body, const std::string& source) {
 // --- repairs ---
 
 constexpr std::size_t kSerious = 1000;
+// Parts of the diagonal.
+constexpr double kPrecision = 1e-7;
+constexpr double kShort = 1e-5;  ///< a curve that ends farther from its vertex stops short; tolerances explain less
 
 /// How bad the faults are: what the mesher cannot survive counts most.
 std::size_t badness(const std::vector<ModelFault>& faults, double diagonal) {
@@ -99,10 +102,11 @@ Attempt attempt(CadBody body, const std::string& source) {
   return result;
 }
 
-void fix_shape(CadBody& body) {
+/// Runs OpenCASCADE's repairs; whether they changed anything is not known.
+bool fix_shape(CadBody& body) {
   const double diagonal = diagonal_of(body.shape);
   const Handle(ShapeFix_Shape) fix = new ShapeFix_Shape(body.shape);
-  fix->SetPrecision(1e-7 * diagonal);
+  fix->SetPrecision(kPrecision * diagonal);
   fix->SetMaxTolerance(1e-3 * diagonal);
   fix->Perform();
   const TopTools_IndexedMapOfShape faces = sub_shapes(body.shape, TopAbs_FACE);
@@ -112,12 +116,13 @@ void fix_shape(CadBody& body) {
     body.notes.push_back({"face " + std::to_string(body.faces[static_cast<std::size_t>(i - 1)].cad_id), "repaired"});
   }
   replace_shape(body, fix->Shape(), [&](const TopoDS_Shape& part) { return context->Apply(part); });
+  return true;
 }
 
-/// Edges that only stop too soon have a border where their faces say, however far that is.
-void complete(CadBody& body) {
+/// Edges that only stop too soon have a border where their faces say, however far that is. False if there are none.
+bool complete(CadBody& body) {
   const double diagonal = diagonal_of(body.shape);
-  complete_edges(body, 1e-5 * diagonal, 1e-7 * diagonal);
+  return complete_edges(body, kShort * diagonal, kPrecision * diagonal);
 }
 
 // --- details ---
@@ -227,7 +232,7 @@ Result<Model> heal_and_convert(CadBody& body, const std::string& source, const H
     if (best.bad >= kSerious) {
       for (const auto repair : {complete, fix_shape}) {
         CadBody repaired = best.body;
-        repair(repaired);
+        if (!repair(repaired)) continue;
         Attempt next = attempt(std::move(repaired), source);
         // A solid that vanishes takes its faults along.
         if (next.bad < best.bad && next.body.solids.size() >= best.body.solids.size()) best = std::move(next);

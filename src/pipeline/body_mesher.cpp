@@ -8,9 +8,7 @@
 #include <set>
 
 #include "boundary/fill_holes.h"
-#include "boundary/refine_surface.h"
 #include "boundary/simplicial.h"
-#include "boundary/surface_triangles.h"
 #include "boundary/surround.h"
 #include "boundary/vertex_fans.h"
 
@@ -139,7 +137,6 @@ class BodyMesher {
     if (!recovered.ok()) return recovered.error();
     if (!body.recovery.failures.empty()) return body.recovery.failures;
     if (const Failures shared = shared_edges(body); !shared.empty()) return shared;
-    if (const Failures folded = folds(body); !folded.empty()) return folded;
     if (const Failures broken = broken_fans(body); !broken.empty()) return broken;
 
     clock_.start("classification", 0.5, 0.55);
@@ -156,21 +153,6 @@ class BodyMesher {
       if (!told.insert(std::minmax(offence.a, offence.b)).second) continue;
       const Vec3 a = body.vertices.position(offence.a), b = body.vertices.position(offence.b);
       failures.push_back({{offence.face}, 0.5 * (a + b), 0.5 * distance(a, b), describe(offence, model_)});
-    }
-    return failures;
-  }
-
-  /// What recovery took from the tetrahedralization was held against the surface, but not what lies around the points
-  /// that it added.
-  Failures folds(const BodyMesh& body) const {
-    Failures failures;
-    const auto triangles = surface_triangles(body.boundary);
-    for (const std::uint32_t i : folded_facets(*body.conjoint, triangles)) {
-      const SurfaceTriangle& t = triangles[i];
-      Vec3 middle{};
-      for (const VertexId v : t.vertices) middle = middle + (1.0 / 3) * body.vertices.position(v);
-      const double size = 0.5 * longest_edge(body.vertices, t.vertices);
-      failures.push_back({{t.face}, middle, size, "a facet is folded against its face"});
     }
     return failures;
   }

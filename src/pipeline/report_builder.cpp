@@ -330,7 +330,7 @@ Error to_error(const RecoveryFailure& failure, const Model& model, const Setting
     error.message += fmt::format(": {} {}, by {:.3g} {}, more than the size at which this happens", off->entity,
                                  off->what, out(off->amount), settings.unit);
     error.hint = "repair it in the CAD system, or export with a tighter tolerance";
-  } else if (failure.proved) {
+  } else if (failure.proved || (failure.crossing && failure.size <= 0)) {
     error.hint = crossing_hint(failure, model);
   } else if (failure.size > 0) {
     error.hint = fmt::format("a size of {:.3g} {} there may do:{}", out(failure.size), settings.unit, sizes);

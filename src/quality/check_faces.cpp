@@ -124,10 +124,10 @@ class FaceTask {
       return;
     }
     outcome.slack += 0.5 * norm(normal) * foot->distance;
-    // Around a sharp bend, and where the surface turns back beyond its border, the corners may lead to a place that is
-    // not the closest of the face.
-    if (is_against(normal, foot->uv) && is_against(normal, projector_.closest(centroid, foot->uv)))
-      outcome.folds.push_back(t);
+    // Around a sharp bend the corners may lead to a place that is not the closest of the face; and beyond the face's
+    // border its surface may turn back.
+    const bool is_sound = foot->inside_box && !is_against(normal, foot->uv);
+    if (!is_sound && is_against(normal, projector_.closest(centroid, foot->uv))) outcome.folds.push_back(t);
   }
 
   bool is_against(Vec3 normal, Vec2 uv) const { return dot(normal, projector_.outward_normal(uv)) < 0; }

@@ -123,7 +123,7 @@ struct Shared {
   std::vector<CadVertexId> vertices;
 };
 
-constexpr std::uint32_t kNoSlot = std::numeric_limits<std::uint32_t>::max();
+constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
 
 /// A face within reach of a probe, with those of its patches that are nearest by their middles, and their distances.
 struct NearFace {
@@ -133,7 +133,7 @@ struct NearFace {
   std::array<Ranked, kNearestPatches> nearest;
 
   NearFace(FaceId id, double distance) : face(id), away(distance) {
-    nearest.fill({std::numeric_limits<double>::infinity(), kNoSlot});
+    nearest.fill({std::numeric_limits<double>::infinity(), kNone});
   }
   void keep(Ranked patch) {
     for (Ranked& slot : nearest)
@@ -152,7 +152,7 @@ double outside(const Box3& box, Vec3 p) {
 class GapSearch {
  public:
   explicit GapSearch(const Scene& scene)
-      : scene_(scene), faces_(scene.input.model.faces.size()), slot_of_(faces_.size(), kNoSlot) {}
+      : scene_(scene), faces_(scene.input.model.faces.size()), slot_of_(faces_.size(), kNone) {}
 
   void search(const Patch& patch) {
     std::vector<std::uint32_t> candidates;
@@ -277,14 +277,14 @@ class GapSearch {
       const double away = outside(patch.box, point);
       if (away > reach) continue;
       std::uint32_t& slot = slot_of_[patch.face.value()];
-      if (slot == kNoSlot) {
+      if (slot == kNone) {
         slot = static_cast<std::uint32_t>(near_.size());
         near_.emplace_back(patch.face, away);
       }
       near_[slot].away = std::min(near_[slot].away, away);
       near_[slot].keep({distance(patch.point, point), i});
     }
-    for (const NearFace& face : near_) slot_of_[face.face.value()] = kNoSlot;
+    for (const NearFace& face : near_) slot_of_[face.face.value()] = kNone;
     std::sort(near_.begin(), near_.end(),
               [](const NearFace& a, const NearFace& b) { return std::tie(a.away, a.face) < std::tie(b.away, b.face); });
   }
@@ -299,7 +299,7 @@ class GapSearch {
       if (is_near_shared(probe, other.face, probe.size)) continue;
       std::optional<Foot> last;
       for (const auto& [away, i] : other.nearest) {
-        if (i == kNoSlot) continue;
+        if (i == kNone) continue;
         const auto foot = foot_on(probe.point, other.face, scene_.patches[i]->middle());
         if (!foot || (last && distance(last->point, foot->point) <= 1e-3 * foot->gap)) continue;
         last = foot;

@@ -49,5 +49,17 @@ TEST(RecoveryErrors, FacesOfTwoSolidsThatCrossMayBeMeshedApart) {
   for (std::size_t f = 1; f < joined.faces.size(); ++f) EXPECT_FALSE(offers(hint(joined, FaceId(0), FaceId(f))));
 }
 
+TEST(RecoveryErrors, CrossingsThatNoSizeHelpsSayWhatToDo) {
+  RecoveryFailure failure;
+  failure.faces = {FaceId(0), FaceId(1)};
+  failure.crossing = true;
+  Settings settings;
+  settings.unit = "mm";
+  const Model model = test::make_pierced_ball(5, 1, 14);
+  EXPECT_EQ(to_error(failure, model, settings).hint, crossing_hint(failure, model));
+  failure.size = 0.1;
+  EXPECT_NE(to_error(failure, model, settings).hint.find("--face-size"), std::string::npos);
+}
+
 }  // namespace
 }  // namespace curvetet

@@ -491,6 +491,50 @@ TEST(FaceProjector, FindsTheClosestPointOfTheFaceThoughTheSurfaceBeyondIsCloser)
   }
 }
 
+/// A flat face whose surface turns back beyond the border, and finds all its feet there.
+class TurnedBack final : public Surface {
+ public:
+  TurnedBack(const Surface& flat, double border) : flat_(flat.clone()), border_(border) {}
+  SurfaceKind kind() const override { return SurfaceKind::other; }
+  Vec3 value(Vec2 uv) const override { return flat_->value({std::min(uv.x, mirrored(uv.x)), uv.y}); }
+  SurfaceFirst first(Vec2 uv) const override {
+    SurfaceFirst at = flat_->first({std::min(uv.x, mirrored(uv.x)), uv.y});
+    if (uv.x > border_) at.du = -at.du;
+    return at;
+  }
+  SurfaceSecond second(Vec2 uv) const override {
+    const SurfaceFirst at = first(uv);
+    return {at.value, at.du, at.dv, {}, {}, {}};
+  }
+  std::unique_ptr<Surface> clone() const override { return std::make_unique<TurnedBack>(*flat_, border_); }
+  std::optional<Vec2> project(Vec3 point, Vec2 guess) const override {
+    const auto foot = flat_->project(point, guess);
+    return foot ? std::optional(Vec2{mirrored(foot->x), foot->y}) : foot;
+  }
+
+ private:
+  double mirrored(double u) const { return 2 * border_ - u; }
+
+  std::unique_ptr<Surface> flat_;
+  double border_;
+};
+
+TEST(Validate, AFoldIsOneThoughTheSurfaceBeyondTheBorderFacesIt) {
+  for (const bool folded : {false, true}) {
+    Sample s = box();
+    for (std::size_t f = 0; f < s.model.faces.size(); ++f) {
+      ModelFace& face = s.model.faces[FaceId(f)];
+      face.surface = std::make_shared<TurnedBack>(*face.surface, face.high.x);
+    }
+    const Point middle{1, 1.5, 0};
+    const auto node = std::find(s.mesh.points.begin(), s.mesh.points.end(), middle) - s.mesh.points.begin();
+    if (folded) move(s, static_cast<std::size_t>(node), {1.2, 0.2, 0});
+    const ValidationReport report = check(s, true);
+    const Finding* fold = find(report, "fold");
+    EXPECT_EQ(fold == nullptr ? 0 : fold->count, folded ? 2 : 0) << words(report);
+  }
+}
+
 TEST(ForcedAngles, ThinWedgeOfTwoFacesIsTheBodysOwn) {
   Context context;
   const QualitySummary quality = validate(thin_wedge(), nullptr, 1, context).quality;

@@ -448,8 +448,9 @@ Model make_cone(double bottom, double top, double height) {
   return body.take();
 }
 
-Model make_pierced_ball(double ball, double radius, double height) {
-  Revolution body(ball, -0.5 * height, 0.5 * height);
+Model make_pierced_ball(double ball, double radius, double height, double outer, double wall) {
+  const double extent = std::max(outer, 0.5 * height);
+  Revolution body(std::max(outer, ball), -extent, extent);
   const SolidId solid = body.solid(ball_volume(ball));
   body.add({{half_circle(ball, true)}, solid, SolidId()});
   Profile hole;
@@ -458,6 +459,15 @@ Model make_pierced_ball(double ball, double radius, double height) {
   hole.pieces = {straight_piece({0, h}, {radius, h}), straight_piece({radius, h}, {radius, -h}),
                  straight_piece({radius, -h}, {0, -h})};
   body.add(hole);
+  if (outer > 0) {
+    const double z = 0.8 * outer, r = std::sqrt(std::pow(outer - wall, 2) - z * z);
+    const SolidId shell = body.solid(ball_volume(outer) - 2 * kPi * r * r * z);
+    body.add({{half_circle(outer, true)}, shell, SolidId()});
+    Profile cavity;
+    cavity.left = shell;
+    cavity.pieces = {straight_piece({0, z}, {r, z}), straight_piece({r, z}, {r, -z}), straight_piece({r, -z}, {0, -z})};
+    body.add(cavity);
+  }
   return body.take();
 }
 

@@ -21,8 +21,10 @@ Model make_cylinder(double radius, double height);
 Model make_cone(double bottom, double top, double height);
 /// One face with two seams.
 Model make_torus(double major, double minor);
-/// No body, since its faces cross: a ball with a hole, shaped as a cylinder, that sticks out of it on both sides.
-Model make_pierced_ball(double ball, double radius, double height);
+/// No body, since its faces cross: a ball with a hole, shaped as a cylinder, that sticks out of it on both sides;
+/// around it, if given, a sound ball with a cavity, shaped as a cylinder, that leaves a wall between its rims and the
+/// outside.
+Model make_pierced_ball(double ball, double radius, double height, double outer = 0, double wall = 0);
 /// Cylinder with a coaxial bore: plane faces with two loops.
 Model make_tube(double outer, double inner, double height);
 /// Two spherical caps that meet in a sharp circle; `half_thickness` < radius of the rim.
