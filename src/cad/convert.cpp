@@ -322,6 +322,7 @@ class Converter {
       edge.degenerate = true;
       edge.curve = nullptr;
     }
+    if (edge.degenerate && edge.low == edge.high) edge.high = edge.low + 1;  // its uses stay at one point
     return model_.edges.push_back(std::move(edge));
   }
 

@@ -9,11 +9,13 @@
 #include <BRep_Tool.hxx>
 #include <ShapeBuild_ReShape.hxx>
 #include <ShapeFix_Shape.hxx>
+#include <algorithm>
 
 #include "cad/cells.h"
 #include "cad/complete_edges.h"
 #include "cad/confirm_crossing.h"
 #include "cad/convert.h"
+#include "cad/empty_faces.h"
 #include "cad/fuse.h"
 #include "cad/guard.h"
 #include "cad/occt_geometry.h"
@@ -125,6 +127,19 @@ bool complete(CadBody& body) {
   return complete_edges(body, kShort * diagonal, kPrecision * diagonal);
 }
 
+/// Two edges that are one within the precision need no face between them: facets of it would cross those around.
+void close_up(Attempt& best, const std::string& source) {
+  const auto& faces = best.model.value().faces;
+  const double diagonal = best.model.value().diagonal();
+  if (std::none_of(faces.begin(), faces.end(),
+                   [&](const ModelFace& face) { return face.area < kPrecision * diagonal * diagonal; }))
+    return;
+  CadBody body = best.body;
+  if (!drop_empty_faces(body, kPrecision * diagonal_of(body.shape))) return;
+  Attempt next = attempt(std::move(body), source);
+  if (next.bad <= best.bad && next.body.solids.size() == best.body.solids.size()) best = std::move(next);
+}
+
 // --- details ---
 
 /// Of the body's diagonal: what is larger is no detail.
@@ -228,6 +243,7 @@ Result<Model> heal_and_convert(CadBody& body, const std::string& source, const H
   return guarded(ErrorCode::reader_failed, "cannot repair the shape in " + source, [&]() -> Result<Model> {
     if (const auto error = close_solids(body, source)) return *error;
     Attempt best = attempt(body, source);
+    if (best.model) close_up(best, source);
     // Distances alone are measured and told; the repairs seldom lessen them.
     if (best.bad >= kSerious) {
       for (const auto repair : {complete, fix_shape}) {

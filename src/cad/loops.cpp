@@ -75,8 +75,8 @@ class Tracer {
     raw.from = raw.use.reversed ? model_edge.end : model_edge.start;
     raw.to = raw.use.reversed ? model_edge.start : model_edge.end;
     Standard_Real first = 0, last = 0;
-    raw.point = model_edge.degenerate && !BRep_Tool::Degenerated(edge);
     raw.curve = BRep_Tool::CurveOnSurface(edge, face_, first, last);
+    raw.point = model_edge.degenerate && (!BRep_Tool::Degenerated(edge) || first == last);
     if (raw.curve.IsNull()) return raw;
     const double length = model_edge.high - model_edge.low;
     if (std::abs(first - model_edge.low) + std::abs(last - model_edge.high) > 1e-12 * std::abs(length)) {

@@ -9,8 +9,14 @@
 #include <BRepPrimAPI_MakeBox.hxx>
 #include <BRepPrimAPI_MakeCylinder.hxx>
 #include <BRepPrimAPI_MakeSphere.hxx>
+#include <BRepTools_ReShape.hxx>
 #include <BRep_Builder.hxx>
 #include <BRep_Tool.hxx>
+#include <ElSLib.hxx>
+#include <Geom2d_Line.hxx>
+#include <Geom_Line.hxx>
+#include <Geom_Plane.hxx>
+#include <Precision.hxx>
 #include <TopExp.hxx>
 #include <TopExp_Explorer.hxx>
 #include <TopTools_IndexedMapOfShape.hxx>
@@ -25,8 +31,12 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <gp.hxx>
+#include <gp_Pln.hxx>
 #include <map>
 #include <numbers>
+#include <optional>
+#include <utility>
 #include <vector>
 
 #include "cad/shape.h"
@@ -62,7 +72,8 @@ class Polyhedron {
     BRep_Builder().UpdateVertex(vertices_[vertex], tolerance);
   }
 
-  void add_face(const std::vector<std::size_t>& corners) {
+  /// The plane is found where all edges have a length.
+  void add_face(const std::vector<std::size_t>& corners, const std::optional<gp_Pln>& plane = std::nullopt) {
     // MakeWire would join the vertices itself.
     TopoDS_Wire wire;
     BRep_Builder builder;
@@ -71,7 +82,15 @@ class Polyhedron {
       builder.Add(wire, edge(corners[i], corners[(i + 1) % corners.size()]));
     }
     wire.Closed(true);
-    faces_.push_back(BRepBuilderAPI_MakeFace(wire, true).Face());
+    if (!plane) {
+      faces_.push_back(BRepBuilderAPI_MakeFace(wire, true).Face());
+      return;
+    }
+    TopoDS_Face face;
+    builder.MakeFace(face, new Geom_Plane(*plane), Precision::Confusion());
+    builder.Add(face, wire);
+    for (TopExp_Explorer e(wire, TopAbs_EDGE); e.More(); e.Next()) give_curve(TopoDS::Edge(e.Current()), face, *plane);
+    faces_.push_back(face);
   }
 
   TopoDS_Solid solid() const {
@@ -89,9 +108,31 @@ class Polyhedron {
   TopoDS_Edge edge(std::size_t a, std::size_t b) {
     auto& known = edges_[std::minmax(a, b)];
     if (known.IsNull()) {
-      known = BRepBuilderAPI_MakeEdge(vertices_[std::min(a, b)], vertices_[std::max(a, b)]).Edge();
+      const TopoDS_Vertex &from = vertices_[std::min(a, b)], &to = vertices_[std::max(a, b)];
+      const bool is_empty = BRep_Tool::Pnt(from).Distance(BRep_Tool::Pnt(to)) == 0;
+      known = is_empty ? empty_edge(from, to) : BRepBuilderAPI_MakeEdge(from, to).Edge();
     }
     return a < b ? known : TopoDS::Edge(known.Reversed());
+  }
+
+  /// The kernel makes none in a plane where the edge has no range.
+  static void give_curve(const TopoDS_Edge& edge, const TopoDS_Face& face, const gp_Pln& plane) {
+    Standard_Real low = 0, high = 0;
+    BRep_Tool::Range(edge, low, high);
+    if (low < high) return;
+    double u = 0, v = 0;
+    ElSLib::Parameters(plane, BRep_Tool::Pnt(TopExp::FirstVertex(edge)), u, v);
+    BRep_Builder().UpdateEdge(edge, new Geom2d_Line(gp_Pnt2d(u, v), gp::DX2d()), face, Precision::Confusion());
+  }
+
+  static TopoDS_Edge empty_edge(const TopoDS_Vertex& from, const TopoDS_Vertex& to) {
+    TopoDS_Edge edge;
+    const BRep_Builder builder;
+    builder.MakeEdge(edge, new Geom_Line(BRep_Tool::Pnt(from), gp::DX()), Precision::Confusion());
+    builder.Add(edge, from.Oriented(TopAbs_FORWARD));
+    builder.Add(edge, to.Oriented(TopAbs_REVERSED));
+    builder.Range(edge, 0, 0);
+    return edge;
   }
 
   std::vector<TopoDS_Vertex> vertices_;
@@ -270,6 +311,77 @@ TEST(Repair, AnEdgeThatGoesTheWrongWayIsRefused) {
   const Result<Model> model = convert(wedge);
   ASSERT_FALSE(model);
   EXPECT_EQ(model.error().code, ErrorCode::bad_face);
+}
+
+/// A cube with one edge twice, and between the two a face without area.
+TopoDS_Solid cube_with_empty_face() {
+  const TopoDS_Shape cube = BRepPrimAPI_MakeBox(1, 1, 1).Shape();
+  const TopoDS_Edge edge = straight_edges(cube).front();
+  Standard_Real low = 0, high = 0;
+  const Handle(Geom_Curve) curve = BRep_Tool::Curve(edge, low, high);
+  const TopoDS_Edge twin =
+      BRepBuilderAPI_MakeEdge(curve, TopExp::FirstVertex(edge), TopExp::LastVertex(edge), low, high).Edge();
+  TopoDS_Shell shell;
+  TopoDS_Solid solid;
+  const BRep_Builder builder;
+  builder.MakeShell(shell);
+  bool is_first = true;
+  for (TopExp_Explorer face(cube, TopAbs_FACE); face.More(); face.Next()) {
+    TopTools_IndexedMapOfShape edges;
+    TopExp::MapShapes(face.Current(), TopAbs_EDGE, edges);
+    const Handle(BRepTools_ReShape) change = new BRepTools_ReShape;
+    if (edges.Contains(edge) && std::exchange(is_first, false)) change->Replace(edge, twin);
+    builder.Add(shell, change->Apply(face.Current()));
+  }
+  gp_Pnt place;
+  gp_Vec along;
+  curve->D1(low, place, along);
+  TopoDS_Wire wire;
+  builder.MakeWire(wire);
+  builder.Add(wire, edge);
+  builder.Add(wire, twin.Reversed());
+  const gp_Dir across = gp_Dir(gp_Vec(place, gp_Pnt(0.5, 0.5, 0.5)).Crossed(along));
+  builder.Add(shell, BRepBuilderAPI_MakeFace(gp_Pln(place, across), wire, true).Face());
+  builder.MakeSolid(solid);
+  builder.Add(solid, shell);
+  return solid;
+}
+
+TEST(Repair, AFaceWithoutAreaIsLeftOut) {
+  const TopoDS_Shape beside = BRepPrimAPI_MakeBox(gp_Pnt(3, 0, 0), 1, 1, 1).Shape();
+  const Result<Model> model = convert(compound_of({cube_with_empty_face(), beside}));
+  ASSERT_TRUE(model) << model.error().message;
+  test::expect_sound(model.value(), "cube with an empty face");
+  EXPECT_EQ(model.value().faces.size(), 12U);
+  EXPECT_EQ(model.value().edges.size(), 24U);
+  EXPECT_EQ(model.value().solids.size(), 2U);
+  EXPECT_NEAR(test::total_volume(model.value()), 2, 1e-9);
+  ASSERT_EQ(model.value().suppressed.size(), 1U);
+  EXPECT_EQ(model.value().suppressed[0].kind, SuppressedDetail::Kind::face);
+  EXPECT_EQ(model.value().suppressed[0].label.cad_id, 7U);
+  EXPECT_TRUE(has_note(model.value(), "has no area"));
+}
+
+/// The same, where the two edges have vertices of their own, which edges without length join.
+TEST(Repair, AFaceWithoutAreaBetweenEdgesWithoutLengthIsLeftOut) {
+  Polyhedron cube(
+      {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}, {0, 0, 1}, {1, 0, 1}, {1, 1, 1}, {0, 1, 1}, {0, 0, 1}, {1, 0, 1}});
+  cube.add_face({3, 2, 1, 0});
+  cube.add_face({4, 5, 6, 7});
+  cube.add_face({0, 1, 9, 8});
+  cube.add_face({8, 9, 5, 4}, gp_Pln({0, 0, 1}, {0, -1, 1}));
+  cube.add_face({1, 2, 6, 5, 9}, gp_Pln({1, 0, 0}, {1, 0, 0}));
+  cube.add_face({2, 3, 7, 6});
+  cube.add_face({3, 0, 8, 4, 7}, gp_Pln({0, 0, 0}, {-1, 0, 0}));
+  const Result<Model> model = convert(cube.solid());
+  ASSERT_TRUE(model) << model.error().message;
+  test::expect_sound(model.value(), "cube with edges without length");
+  EXPECT_EQ(model.value().faces.size(), 6U);
+  EXPECT_EQ(used_edges(model.value()), 12U);
+  EXPECT_NEAR(test::total_volume(model.value()), 1, 1e-9);
+  // What is left keeps its id.
+  for (const ModelEdge& edge : model.value().edges) EXPECT_TRUE(edge.faces.empty() || edge.label.cad_id <= 15);
+  for (const ModelVertex& vertex : model.value().vertices) EXPECT_LE(vertex.label.cad_id, 10U);
 }
 
 /// A solid that lacks a face, beside a sound one: repairs make a loose shell of it, which has no faults.
