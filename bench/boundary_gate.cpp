@@ -120,7 +120,7 @@ int main(int argc, char** argv) {
   if (divisors.empty()) divisors = {5, 10, 20, 50};
   Context context;
   LoadOptions load;
-  load.overlaps = Overlaps::split;  // what is tested here are surface meshes, whosever they are
+  load.joining.overlaps = Overlaps::split;  // what is tested here are surface meshes, whosever they are
   load.isolate = false;
   const auto start = std::chrono::steady_clock::now();
   const Result<Model> model = load_model(argv[1], load, context);

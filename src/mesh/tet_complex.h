@@ -36,6 +36,19 @@ class TetComplex {
  public:
   using Vertices = std::array<VertexId, 4>;
 
+  /// All of a tet side by side, in at most two cache lines: whoever reads one part reads the others next.
+  struct Tet {
+    Vertices vertices;
+    std::array<TetId, 4> neighbours;
+    std::uint32_t flags = 0;
+    mutable std::uint32_t stamp = 0;  ///< flood and state
+  };
+  /// For loops that read or write all of a tet; until the next tet is added.
+  Tet* tets() { return tets_.data(); }
+  const Tet* tets() const { return tets_.data(); }
+  /// What a tet's stamp is in state 0 of the present flood; states are added.
+  std::uint32_t flood() const { return flood_; }
+
   std::size_t slots() const { return tets_.size(); }  ///< alive and free slots
   std::size_t alive() const { return tets_.size() - free_.size(); }
   bool is_alive(TetId t) const { return tets_[t.value()].vertices[0].valid(); }
@@ -64,6 +77,13 @@ class TetComplex {
   std::array<VertexId, 3> facet_vertices(TetFacet f) const {
     const std::array<int, 3>& k = kFacet[static_cast<std::size_t>(f.local)];
     return {vertex(f.tet, k[0]), vertex(f.tet, k[1]), vertex(f.tet, k[2])};
+  }
+
+  /// Asks for a tet's memory ahead of its use.
+  void prefetch(TetId t) const {
+    const char* tet = reinterpret_cast<const char*>(&tets_[t.value()]);
+    __builtin_prefetch(tet);
+    __builtin_prefetch(tet + sizeof(Tet) - 1);
   }
 
   TetId add(const Vertices& v);  ///< takes a free slot; neighbours invalid, flags clear
@@ -111,13 +131,6 @@ class TetComplex {
   };
   FacetKey key(TetFacet f) const;
 
-  /// All of a tet side by side, in at most two cache lines: whoever reads one part reads the others next.
-  struct Tet {
-    Vertices vertices;
-    std::array<TetId, 4> neighbours;
-    std::uint32_t flags = 0;
-    mutable std::uint32_t stamp = 0;  ///< flood and state
-  };
   std::vector<Tet> tets_;
   mutable std::uint32_t flood_ = 0;
   std::vector<std::uint32_t> free_;

@@ -4,16 +4,23 @@
 // is built over these local numbers and renamed at the end. Ties are still broken by the caller's ids: the result as a
 // set of tets depends on the points and ids alone, not on the order.
 //
-// Rejected: one Hilbert order without rounds (quadratic on some inputs, e.g. points on two skew lines), caching minors
-// (more memory traffic than it saves), and a table of edges for gluing (see kernel.cpp).
+// There are no locks yet, so that the cavity is known once it is grown. Its boundary is noted with all that the star
+// needs, and the star takes the cavity's own slots. The time goes into waiting for memory and into spheres: tets are
+// fetched ahead, and the spheres around one tet evaluated together (insphere_four.h).
+//
+// Rejected: one Hilbert order without rounds (quadratic on some inputs, e.g. points on two skew lines); large pages
+// (they take longer to clear than they save); growing without branches (most of what is written is not needed).
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <bit>
 #include <limits>
 #include <string>
+#include <utility>
 
 #include "predicates/predicates.h"
+#include "spatial/hilbert.h"
+#include "spatial/insphere_four.h"
 #include "spatial/kernel.h"
 #include "spatial/tetrahedralization.h"
 
@@ -21,9 +28,11 @@ namespace curvetet {
 
 namespace {
 
-constexpr int kHilbertBits = 16;  ///< per coordinate
+constexpr double kGrid = 0x1p-42;          ///< every coordinate is a multiple (predicates.h)
+constexpr std::int64_t kCoarse = 1 << 20;  ///< grid steps between points of a lattice, at least
+constexpr int kHilbertBits = 16;           ///< per coordinate
 constexpr std::size_t kSmallestRound = 64;
-constexpr int kRoundBits = 2;  ///< all rounds before one hold 2^-kRoundBits of the points up to it
+constexpr int kRoundBits = 3;  ///< all rounds before one hold 2^-kRoundBits of the points up to it
 
 std::uint64_t mix(std::uint64_t x) {
   x = (x ^ (x >> 30)) * 0xBF58476D1CE4E5B9ULL;
@@ -31,65 +40,29 @@ std::uint64_t mix(std::uint64_t x) {
   return x ^ (x >> 31);
 }
 
-/// Index along the Hilbert curve of a cell (Skilling, Programming the Hilbert curve, 2004).
-std::uint64_t hilbert_index(std::array<std::uint32_t, 3> x) {
-  for (std::uint32_t q = 1U << (kHilbertBits - 1); q > 1; q >>= 1) {
-    const std::uint32_t p = q - 1;
-    for (std::uint32_t& coordinate : x) {
-      if (coordinate & q) {
-        x[0] ^= p;
-      } else {
-        const std::uint32_t t = (x[0] ^ coordinate) & p;
-        x[0] ^= t;
-        coordinate ^= t;
-      }
-    }
-  }
-  x[1] ^= x[0];
-  x[2] ^= x[1];
-  std::uint32_t t = 0;
-  for (std::uint32_t q = 1U << (kHilbertBits - 1); q > 1; q >>= 1) {
-    if (x[2] & q) t ^= q - 1;
-  }
-  std::uint64_t index = 0;
-  for (int bit = kHilbertBits - 1; bit >= 0; --bit) {
-    for (const std::uint32_t coordinate : x) index = index << 1 | ((coordinate ^ t) >> bit & 1U);
-  }
-  return index;
-}
-
-/// The vertices in order of insertion.
+/// The vertices in order of insertion: by round, along the curve, by id.
 std::vector<VertexId> insertion_order(std::span<const VertexId> vertices, const VertexStore& store,
                                       std::uint64_t seed) {
-  struct Key {
-    std::uint64_t hilbert;
-    int round;
-    VertexId vertex;
-    auto operator<=>(const Key& other) const {
-      if (round != other.round) return round <=> other.round;
-      if (hilbert != other.hilbert) return hilbert <=> other.hilbert;
-      return vertex <=> other.vertex;
-    }
-  };
   Box3 box;
   for (const VertexId v : vertices) box.extend(store.position(v));
   const double extent = std::max({box.high.x - box.low.x, box.high.y - box.low.y, box.high.z - box.low.z});
   const double cells = extent > 0 ? ((1U << kHilbertBits) - 1) / extent : 0;
   int rounds = 0;
   while (vertices.size() >> (kRoundBits * rounds) > kSmallestRound) ++rounds;
-  std::vector<Key> keys;
+  std::vector<std::pair<std::uint64_t, VertexId>> keys;
   keys.reserve(vertices.size());
   for (const VertexId v : vertices) {
     const Vec3 p = cells * (store.position(v) - box.low);
     const int early = std::min(rounds, std::countr_zero(mix(seed ^ v.value())) / kRoundBits);
-    keys.push_back({hilbert_index({static_cast<std::uint32_t>(p.x), static_cast<std::uint32_t>(p.y),
-                                   static_cast<std::uint32_t>(p.z)}),
-                    rounds - early, v});
+    const std::uint64_t place = kernel::hilbert_index(
+        {static_cast<std::uint32_t>(p.x), static_cast<std::uint32_t>(p.y), static_cast<std::uint32_t>(p.z)},
+        kHilbertBits);
+    keys.emplace_back(static_cast<std::uint64_t>(rounds - early) << (3 * kHilbertBits) | place, v);
   }
-  std::sort(keys.begin(), keys.end(), [](const Key& a, const Key& b) { return a < b; });
+  std::sort(keys.begin(), keys.end());
   std::vector<VertexId> order;
   order.reserve(keys.size());
-  for (const Key& key : keys) order.push_back(key.vertex);
+  for (const auto& [key, vertex] : keys) order.push_back(vertex);
   return order;
 }
 
@@ -97,79 +70,103 @@ Error error_at(std::string message, std::vector<std::string> entities, Vec3 wher
   return {ErrorCode::zero_size, std::move(message), std::move(entities), where};
 }
 
-Error same_place(VertexId a, VertexId b, Vec3 where) {
-  const std::string first = fmt::format("vertex {}", std::min(a, b).value());
-  const std::string second = fmt::format("vertex {}", std::max(a, b).value());
-  return error_at(fmt::format("{} and {} are at the same place", first, second), {first, second}, where);
+using kernel::Site;
+
+Error same_place(const Site& a, const Site& b) {
+  const std::string first = fmt::format("vertex {}", std::min(a.id, b.id).value());
+  const std::string second = fmt::format("vertex {}", std::max(a.id, b.id).value());
+  return error_at(fmt::format("{} and {} are at the same place", first, second), {first, second}, a.position);
 }
+
+struct Sites {
+  const Site* sites = nullptr;
+  const Vec3& position(VertexId v) const { return sites[v.value()].position; }
+  VertexId tie_id(VertexId v) const { return sites[v.value()].id; }
+};
 
 /// Inserts points one by one into a complex over local numbers 0..n-1 in the order of insertion.
 class Builder {
  public:
-  Builder(TetComplex& complex, std::vector<VertexId> order, const VertexStore& store, std::uint64_t seed)
-      : complex_(complex), order_(std::move(order)), stream_(seed) {
-    positions_.reserve(order_.size());
-    for (const VertexId v : order_) positions_.push_back(store.position(v));
-    complex_.reserve(7 * order_.size() + 64);
-    star_builder_.cover_vertices(order_.size());
+  Builder(TetComplex& complex, const std::vector<VertexId>& order, const VertexStore& store, std::uint64_t seed)
+      : complex_(complex), stream_(seed) {
+    sites_.reserve(order.size());
+    std::int64_t bits = 0;
+    for (const VertexId v : order) {
+      const Vec3& p = store.position(v);
+      sites_.push_back({p, v});
+      for (const double x : {p.x, p.y, p.z}) bits |= static_cast<std::int64_t>(x / kGrid);
+    }
+    exact_ = kernel::exact_below(kGrid * static_cast<double>(bits & -bits));
+    on_lattice_ = (bits & -bits) > kCoarse;
+    complex_.reserve(7 * order.size() + 64);
+    star_builder_.cover_vertices(order.size());
   }
 
   Status run(const Context& context) {
     if (Status status = start(); !status.ok()) return status;
-    sites_ = {positions_.data(), order_.data()};
-    for (std::size_t k = 4; k < order_.size(); ++k) {
+    for (std::size_t k = 4; k < sites_.size(); ++k) {
       if (k % 1024 == 0 && context.should_stop()) return context.stop_error("tetrahedralization");
-      if (const VertexId twin = insert(VertexId(k)); twin.valid()) {
-        return same_place(order_[k], order_[twin.value()], positions_[k]);
-      }
+      if (const VertexId twin = insert(VertexId(k)); twin.valid()) return same_place(sites_[k], sites_[twin.value()]);
     }
     rename();
     return Done{};
   }
 
+  /// After run: each vertex with a tet that has it.
+  template <class Take>
+  void for_each_vertex(const Take& take) const {
+    for (const Site& site : sites_) take(site.id, TetId(site.number));
+  }
+
  private:
+  /// A facet of the cavity's boundary, seen from outside, with its vertices as the tet inside lists them.
+  struct Wall {
+    TetId outer;
+    int local = 0;
+    std::array<VertexId, 3> vertices;
+  };
+
   /// Brings four points that are not coplanar to the front and makes the first tet.
   Status start() {
-    const std::size_t n = order_.size();
-    if (n < 4) return error_at("fewer than four vertices", {}, n > 0 ? positions_[0] : Vec3{});
-    const auto& p = positions_;
-    std::size_t second = 1;
-    while (second < n && p[second] == p[0]) ++second;
-    if (second != 1) return same_place(order_[0], order_[1], p[0]);
+    const std::size_t n = sites_.size();
+    const auto at = [&](std::size_t k) -> const Vec3& { return sites_[k].position; };
+    if (n < 4) return error_at("fewer than four vertices", {}, n > 0 ? at(0) : Vec3{});
+    if (at(1) == at(0)) return same_place(sites_[0], sites_[1]);
     std::size_t third = 2;
-    while (third < n && collinear(p[0], p[1], p[third])) ++third;
-    if (third == n) return error_at("all vertices are collinear", {}, p[0]);
+    while (third < n && collinear(at(0), at(1), at(third))) ++third;
+    if (third == n) return error_at("all vertices are collinear", {}, at(0));
     bring_to_front(third, 2);
     std::size_t fourth = 3;
-    while (fourth < n && orient3d(p[0], p[1], p[2], p[fourth]) == 0) ++fourth;
-    if (fourth == n) return error_at("all vertices are coplanar", {}, p[0]);
+    while (fourth < n && orient3d(at(0), at(1), at(2), at(fourth)) == 0) ++fourth;
+    if (fourth == n) return error_at("all vertices are coplanar", {}, at(0));
     bring_to_front(fourth, 3);
-    const bool positive = orient3d(p[0], p[1], p[2], p[3]) > 0;
+    const bool positive = orient3d(at(0), at(1), at(2), at(3)) > 0;
     last_ = kernel::add_first_tet(complex_, VertexId(positive ? 0 : 1), VertexId(positive ? 1 : 0), VertexId(2),
                                   VertexId(3));
     return Done{};
   }
 
   void bring_to_front(std::size_t from, std::size_t to) {
-    const auto rotate = [&](auto& array) {
-      const auto begin = array.begin();
-      std::rotate(begin + static_cast<std::ptrdiff_t>(to), begin + static_cast<std::ptrdiff_t>(from),
-                  begin + static_cast<std::ptrdiff_t>(from) + 1);
-    };
-    rotate(order_);
-    rotate(positions_);
+    const auto begin = sites_.begin();
+    std::rotate(begin + static_cast<std::ptrdiff_t>(to), begin + static_cast<std::ptrdiff_t>(from),
+                begin + static_cast<std::ptrdiff_t>(from) + 1);
   }
 
   /// Invalid, or the vertex already there.
   VertexId insert(VertexId v) {
-    const Vec3 p = positions_[v.value()];
-    const TetId first = kernel::walk(complex_, sites_, p, start_for(p), stream_);
+    const Vec3 p = sites_[v.value()].position;
+    const Sites sites{sites_.data()};
+    const TetId first = kernel::walk(complex_, sites, p, start_for(p), stream_);
     for (const VertexId w : complex_.vertices(first)) {
-      if (w != kInfinite && positions_[w.value()] == p) return w;
+      if (w != kInfinite && sites.position(w) == p) return w;
     }
-    grow(first, p, order_[v.value()]);
-    star_builder_.replace(complex_, v, tets_, boundary_, star_);
-    last_ = star_.back();
+    grow(first, p, sites.tie_id(v));
+    if (kernel::EdgeTable::fits(wall_count_)) {
+      fill(v);
+    } else {
+      fill_large(v);
+    }
+    last_ = tets_[wall_count_ - 1];
     return VertexId();
   }
 
@@ -178,61 +175,162 @@ class Builder {
   TetId start_for(const Vec3& p) const {
     TetId best = last_;
     double least = std::numeric_limits<double>::infinity();
-    for (const TetId t : star_) {
+    for (std::size_t k = 0; k < wall_count_; ++k) {
       double sum = 0;
-      for (int i = 0; i < 3; ++i) {
-        const VertexId v = complex_.vertex(t, i);
-        sum += v == kInfinite ? least : norm2(positions_[v.value()] - p);
-      }
+      for (const VertexId v : walls_[k].vertices) sum += v == kInfinite ? least : norm2(sites_[v.value()].position - p);
       if (sum >= least) continue;
       least = sum;
-      best = t;
+      best = tets_[k];
     }
     return best;
   }
 
+  /// Fills tets_ and walls_.
   void grow(TetId first, const Vec3& p, VertexId tie_id) {
     complex_.start_flood();
-    tets_.assign(1, first);
-    boundary_.clear();
-    complex_.set_flood_state(first, kernel::kInside);
-    for (std::size_t k = 0; k < tets_.size(); ++k) {
+    const std::uint32_t outside = complex_.flood() + kernel::kOutside, inside = complex_.flood() + kernel::kInside;
+    TetComplex::Tet* const all = complex_.tets();
+    all[first.value()].stamp = inside;
+    tets_[0] = first;
+    tet_count_ = 1;
+    wall_count_ = 0;
+    for (std::size_t k = 0; k < tet_count_; ++k) {
+      make_room();
       const TetId t = tets_[k];
-      for (int i = 0; i < 4; ++i) {
-        const TetId next = complex_.neighbour(t, i);
-        const std::uint32_t state = complex_.flood_state(next);
-        if (state == kernel::kInside) continue;
-        if (state == 0 && kernel::in_conflict(complex_, sites_, next, p, tie_id)) {
-          complex_.set_flood_state(next, kernel::kInside);
-          tets_.push_back(next);
+      const TetComplex::Tet& tet = all[t.value()];
+      const unsigned conflicts = conflicts_around(tet, p, tie_id);
+      for (std::size_t i = 0; i < 4; ++i) {
+        const TetId id = tet.neighbours[i];
+        const TetComplex::Tet& next = all[id.value()];
+        if (next.stamp == inside) continue;
+        if ((conflicts >> i & 1U) != 0) {
+          next.stamp = inside;
+          for (const TetId beyond : next.neighbours) complex_.prefetch(beyond);
+          tets_[tet_count_++] = id;
           continue;
         }
-        complex_.set_flood_state(next, kernel::kOutside);
-        boundary_.push_back({t, i});
+        next.stamp = outside;
+        const std::array<TetId, 4>& back = next.neighbours;
+        Wall& wall = walls_[wall_count_++];
+        wall.outer = id;
+        wall.local = (back[1] == t) + 2 * (back[2] == t) + 3 * (back[3] == t);
+        for (std::size_t j = 0; j < 3; ++j) wall.vertices[j] = tet.vertices[static_cast<std::size_t>(kFacet[i][j])];
       }
     }
   }
 
+  /// Which neighbours of a tet join the cavity now.
+  unsigned conflicts_around(const TetComplex::Tet& tet, const Vec3& p, VertexId tie_id) const {
+    const Sites sites{sites_.data()};
+    const TetComplex::Tet* const all = complex_.tets();
+    unsigned fresh = 0, finite = 0;
+    for (std::size_t i = 0; i < 4; ++i) {
+      const TetComplex::Tet& next = all[tet.neighbours[i].value()];
+      fresh |= static_cast<unsigned>(next.stamp - complex_.flood() - kernel::kOutside > 1) << i;
+      finite |= static_cast<unsigned>(!complex_.is_ghost(tet.neighbours[i])) << i;
+    }
+    const unsigned asked = fresh & finite;
+    unsigned conflicts = 0, left = fresh;
+    // One alone is cheaper by itself, unless that knows less.
+    if ((asked & (asked - 1)) != 0 || (asked != 0 && on_lattice_)) {
+      const auto some = static_cast<std::size_t>(std::countr_zero(asked));
+      const auto corners = [&](std::size_t i) -> const TetComplex::Vertices& {
+        return all[tet.neighbours[(asked >> i & 1U) != 0 ? i : some].value()].vertices;
+      };
+      const kernel::Verdicts verdicts =
+          insphere_four_(sites.sites, corners(0), corners(1), corners(2), corners(3), p, exact_);
+      conflicts = asked & verdicts.known & verdicts.inside;
+      for (unsigned on = asked & verdicts.known & verdicts.on; on != 0; on &= on - 1) {
+        const auto i = static_cast<std::size_t>(std::countr_zero(on));
+        if (kernel::in_conflict_by_id(sites, corners(i), p, tie_id)) conflicts |= 1U << i;
+      }
+      left &= ~(asked & verdicts.known);
+    }
+    for (; left != 0; left &= left - 1) {
+      const auto i = static_cast<std::size_t>(std::countr_zero(left));
+      if (kernel::in_conflict(complex_, sites, tet.neighbours[i], p, tie_id)) conflicts |= 1U << i;
+    }
+    return conflicts;
+  }
+
+  /// For what one more tet of the cavity brings.
+  void make_room() {
+    if (tets_.size() < tet_count_ + 4) tets_.resize(2 * tets_.size());
+    if (walls_.size() < wall_count_ + 4) walls_.resize(2 * walls_.size());
+  }
+
+  /// Replaces the cavity by the star of v, in the cavity's own slots as far as they reach.
+  void fill(VertexId v) {
+    for (; tet_count_ < wall_count_; ++tet_count_) {
+      if (tet_count_ == tets_.size()) tets_.resize(2 * tets_.size());
+      tets_[tet_count_] = complex_.add({});
+    }
+    table_.clear();
+    TetComplex::Tet* const all = complex_.tets();
+    for (std::size_t k = 0; k < wall_count_; ++k) {
+      const Wall& wall = walls_[k];
+      TetComplex::Tet& tet = all[tets_[k].value()];
+      for (std::size_t j = 0; j < 3; ++j) {
+        const VertexId w = wall.vertices[j];
+        tet.vertices[j] = w;
+        numbers_[k][j] = table_.number_of(w, w == kInfinite ? infinite_ : sites_[w.value()].number);
+      }
+      tet.vertices[3] = v;
+      tet.neighbours[3] = wall.outer;
+      tet.stamp = 0;
+      all[wall.outer.value()].neighbours[static_cast<std::size_t>(wall.local)] = tets_[k];
+      table_.enter(numbers_[k], tets_[k]);
+    }
+    for (std::size_t k = 0; k < wall_count_; ++k) {
+      const std::array<TetId, 3> neighbours = table_.neighbours(numbers_[k]);
+      for (std::size_t j = 0; j < 3; ++j) all[tets_[k].value()].neighbours[j] = neighbours[j];
+    }
+    for (std::size_t k = wall_count_; k < tet_count_; ++k) complex_.remove(tets_[k]);
+  }
+
+  /// The same where the boundary has too many vertices for the table.
+  void fill_large(VertexId v) {
+    boundary_.clear();
+    for (std::size_t k = 0; k < wall_count_; ++k)
+      boundary_.push_back(complex_.mirror({walls_[k].outer, walls_[k].local}));
+    star_builder_.replace(complex_, v, std::span(tets_).first(tet_count_), boundary_, star_);
+    if (tets_.size() < wall_count_) tets_.resize(wall_count_);
+    std::copy(star_.begin(), star_.end(), tets_.begin());
+  }
+
+  /// From local numbers to the caller's ids; notes a tet of each site.
   void rename() {
+    TetComplex::Tet* const all = complex_.tets();
     for (std::size_t slot = 0; slot < complex_.slots(); ++slot) {
-      const TetId t(slot);
-      if (!complex_.is_alive(t)) continue;
-      for (int i = 0; i < 4; ++i) {
-        const VertexId v = complex_.vertex(t, i);
-        if (v != kInfinite) complex_.set_vertex(t, i, order_[v.value()]);
+      if (!complex_.is_alive(TetId(slot))) continue;
+      for (VertexId& v : all[slot].vertices) {
+        if (v == kInfinite) continue;
+        Site& site = sites_[v.value()];
+        site.number = static_cast<std::uint32_t>(slot);
+        v = site.id;
       }
     }
   }
 
   TetComplex& complex_;
-  std::vector<VertexId> order_;
-  std::vector<Vec3> positions_;
+  std::vector<Site> sites_;
   kernel::Stream stream_;
-  kernel::Sites sites_;
+  const kernel::InsphereFour insphere_four_ = kernel::insphere_four();
+  double exact_ = 0;         ///< see kernel::exact_below
+  bool on_lattice_ = false;  ///< all coordinates are multiples of a coarser step than the grid's
   TetId last_;
   kernel::StarBuilder star_builder_;
-  std::vector<TetId> tets_, star_;
+  // The cavity, then the star in its place: tet k of the star is behind wall k. Only the counted entries are in use.
+  std::vector<TetId> tets_ = std::vector<TetId>(64);
+  std::vector<Wall> walls_ = std::vector<Wall>(64);
+  std::size_t tet_count_ = 0, wall_count_ = 0;
+
+  kernel::EdgeTable table_;
+  std::array<kernel::EdgeTable::Numbers, 2 * kernel::EdgeTable::kMostVertices> numbers_{};  ///< of each wall's vertices
+  std::uint32_t infinite_ = 0;  ///< the number of the infinite vertex
+
   std::vector<TetFacet> boundary_;
+  std::vector<TetId> star_;
 };
 
 }  // namespace
@@ -250,9 +348,7 @@ Status Tetrahedralization::build(std::span<const VertexId> vertices, const Conte
     return status;
   }
   cover_vertices();
-  for (std::size_t slot = 0; slot < complex_.slots(); ++slot) {
-    if (complex_.is_alive(TetId(slot))) touch(TetId(slot));
-  }
+  builder.for_each_vertex([this](VertexId v, TetId t) { vertex_tet_[v] = t; });
   return Done{};
 }
 

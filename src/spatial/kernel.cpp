@@ -10,24 +10,6 @@ namespace curvetet::kernel {
 
 namespace {
 
-/// The tet tried by brute force: contains p, or is a ghost with p strictly beyond.
-bool holds(const TetComplex& complex, const Sites& sites, TetId t, const Vec3& p) {
-  const int infinite = infinite_local(complex, t);
-  if (infinite >= 0) return side(complex, sites, t, infinite, p) > 0;
-  for (int i = 0; i < 4; ++i) {
-    if (side(complex, sites, t, i, p) < 0) return false;
-  }
-  return true;
-}
-
-TetId scan(const TetComplex& complex, const Sites& sites, const Vec3& p) {
-  for (std::size_t slot = 0; slot < complex.slots(); ++slot) {
-    const TetId t(slot);
-    if (complex.is_alive(t) && holds(complex, sites, t, p)) return t;
-  }
-  return TetId();
-}
-
 /// Turns around the edge (a,b) from old tet t, leaving it through the facet opposite `away`, to the new tet beyond.
 TetId turn(const TetComplex& complex, TetId t, VertexId a, VertexId b, VertexId away) {
   for (;;) {
@@ -40,47 +22,6 @@ TetId turn(const TetComplex& complex, TetId t, VertexId a, VertexId b, VertexId 
 }
 
 }  // namespace
-
-bool in_conflict(const TetComplex& complex, const Sites& sites, TetId t, const Vec3& p, VertexId tie_id) {
-  const int infinite = infinite_local(complex, t);
-  if (infinite >= 0) {
-    const int beyond = side(complex, sites, t, infinite, p);
-    return beyond != 0 ? beyond > 0 : in_conflict(complex, sites, complex.neighbour(t, infinite), p, tie_id);
-  }
-  const TetComplex::Vertices& v = complex.vertices(t);
-  const Vec3& a = sites.position(v[0]);
-  const Vec3& b = sites.position(v[1]);
-  const Vec3& c = sites.position(v[2]);
-  const Vec3& d = sites.position(v[3]);
-  const filters::Insphere value(a, b, c, d, p);
-  int sign = value.filtered();
-  if (sign == filters::kUnknown) sign = value.unfiltered();
-  if (sign != 0) return sign > 0;
-  return insphere_tie({a, b, c, d, p},
-                      {sites.tie_id(v[0]), sites.tie_id(v[1]), sites.tie_id(v[2]), sites.tie_id(v[3]), tie_id}) > 0;
-}
-
-TetId walk(const TetComplex& complex, const Sites& sites, const Vec3& p, TetId start, Stream& stream) {
-  if (!start.valid()) return scan(complex, sites, p);
-  const int infinite = infinite_local(complex, start);
-  TetId t = infinite >= 0 ? complex.neighbour(start, infinite) : start;
-  TetId previous;
-  // So many steps cost about a fourth of the scan.
-  for (std::size_t steps = 1000 + complex.slots() / 8; steps > 0; --steps) {
-    const std::uint32_t turn_by = stream.next();
-    bool moved = false;
-    for (std::uint32_t k = 0; k < 4 && !moved; ++k) {
-      const int i = static_cast<int>((turn_by + k) & 3U);
-      const TetId next = complex.neighbour(t, i);
-      if (next == previous || side(complex, sites, t, i, p) >= 0) continue;
-      previous = t;
-      t = next;
-      moved = true;
-    }
-    if (!moved || complex.is_ghost(t)) return t;
-  }
-  return scan(complex, sites, p);
-}
 
 TetId add_first_tet(TetComplex& complex, VertexId a, VertexId b, VertexId c, VertexId d) {
   const TetId t = complex.add({a, b, c, d});
@@ -104,8 +45,7 @@ TetId add_first_tet(TetComplex& complex, VertexId a, VertexId b, VertexId c, Ver
 void StarBuilder::replace(TetComplex& complex, VertexId v, std::span<const TetId> tets,
                           std::span<const TetFacet> boundary, std::vector<TetId>& star) {
   add_tets(complex, v, boundary, star);
-  // A sphere of F triangles has F / 2 + 2 vertices.
-  if (boundary.size() / 2 + 2 <= kMostVertices) {
+  if (EdgeTable::fits(boundary.size())) {
     glue_by_table(complex, star);
   } else {
     glue_by_turning(complex, boundary, star);
@@ -129,18 +69,18 @@ void StarBuilder::add_tets(TetComplex& complex, VertexId v, std::span<const TetF
 }
 
 void StarBuilder::glue_by_table(TetComplex& complex, std::span<const TetId> star) {
-  std::array<std::array<std::uint32_t, 3>, 2 * kMostVertices> numbers;
-  named_ = 0;
+  std::array<EdgeTable::Numbers, 2 * EdgeTable::kMostVertices> numbers;
+  table_.clear();
   for (std::size_t k = 0; k < star.size(); ++k) {
-    for (std::size_t i = 0; i < 3; ++i) numbers[k][i] = number_of(complex.vertex(star[k], static_cast<int>(i)));
-    const auto [a, b, c] = numbers[k];
-    beyond_[a][b] = beyond_[b][c] = beyond_[c][a] = star[k];
+    for (std::size_t i = 0; i < 3; ++i) {
+      const VertexId v = complex.vertex(star[k], static_cast<int>(i));
+      numbers[k][i] = table_.number_of(v, numbers_[v.value() + 2U]);
+    }
+    table_.enter(numbers[k], star[k]);
   }
   for (std::size_t k = 0; k < star.size(); ++k) {
-    const auto [a, b, c] = numbers[k];
-    complex.set_neighbour(star[k], 2, beyond_[b][a]);
-    complex.set_neighbour(star[k], 0, beyond_[c][b]);
-    complex.set_neighbour(star[k], 1, beyond_[a][c]);
+    const std::array<TetId, 3> neighbours = table_.neighbours(numbers[k]);
+    for (int i = 0; i < 3; ++i) complex.set_neighbour(star[k], i, neighbours[static_cast<std::size_t>(i)]);
   }
 }
 

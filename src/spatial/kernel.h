@@ -12,12 +12,11 @@
 
 namespace curvetet::kernel {
 
-/// Coordinates by the complex's vertex ids, and the ids by which ties are broken (none: the vertex ids themselves).
+/// Coordinates by the complex's vertex ids, and the ids by which ties are broken. Building has sites of its own.
 struct Sites {
   const Vec3* positions = nullptr;
-  const VertexId* tie_ids = nullptr;
   const Vec3& position(VertexId v) const { return positions[v.value()]; }
-  VertexId tie_id(VertexId v) const { return tie_ids ? tie_ids[v.value()] : v; }
+  VertexId tie_id(VertexId v) const { return v; }
 };
 
 /// A stream of random bits, reproducible from its seed.
@@ -61,7 +60,8 @@ class VertexSet {
 };
 
 /// Sign of orient3d of the tet with local vertex i replaced by p; for a ghost, i must be its infinite vertex.
-inline int side(const TetComplex& complex, const Sites& sites, TetId t, int i, const Vec3& p) {
+template <class Sites>
+int side(const TetComplex& complex, const Sites& sites, TetId t, int i, const Vec3& p) {
   const TetComplex::Vertices& v = complex.vertices(t);
   const std::array<int, 3>& f = kFacet[static_cast<std::size_t>(i)];
   const Vec3& a = sites.position(v[static_cast<std::size_t>(f[0])]);
@@ -74,17 +74,114 @@ inline int side(const TetComplex& complex, const Sites& sites, TetId t, int i, c
 /// Local index of the infinite vertex, or -1.
 inline int infinite_local(const TetComplex& complex, TetId t) { return complex.local(t, kInfinite); }
 
+/// True if the perturbed sphere of a finite tet, on which p is, holds it.
+template <class Sites>
+bool in_conflict_by_id(const Sites& sites, const TetComplex::Vertices& v, const Vec3& p, VertexId tie_id) {
+  // The highest is raised most: p out of the sphere, if it is p.
+  if (std::max(std::max(sites.tie_id(v[0]), sites.tie_id(v[1])), std::max(sites.tie_id(v[2]), sites.tie_id(v[3]))) <
+      tie_id)
+    return false;
+  return insphere_tie({sites.position(v[0]), sites.position(v[1]), sites.position(v[2]), sites.position(v[3]), p},
+                      {sites.tie_id(v[0]), sites.tie_id(v[1]), sites.tie_id(v[2]), sites.tie_id(v[3]), tie_id}) > 0;
+}
+
 /// True if the perturbed sphere of the tet holds p. A ghost is in conflict if p lies strictly beyond its hull facet, or
 /// in the facet's plane and inside the finite neighbour's sphere, which cuts the plane in the facet's circle.
-bool in_conflict(const TetComplex& complex, const Sites& sites, TetId t, const Vec3& p, VertexId tie_id);
+template <class Sites>
+bool in_conflict(const TetComplex& complex, const Sites& sites, TetId t, const Vec3& p, VertexId tie_id) {
+  if (complex.is_ghost(t)) {
+    const int infinite = infinite_local(complex, t);
+    const int beyond = side(complex, sites, t, infinite, p);
+    return beyond != 0 ? beyond > 0 : in_conflict(complex, sites, complex.neighbour(t, infinite), p, tie_id);
+  }
+  const TetComplex::Vertices& v = complex.vertices(t);
+  const filters::Insphere value(sites.position(v[0]), sites.position(v[1]), sites.position(v[2]), sites.position(v[3]),
+                                p);
+  int sign = value.filtered();
+  if (sign == filters::kUnknown) sign = value.unfiltered();
+  return sign != 0 ? sign > 0 : in_conflict_by_id(sites, v, p, tie_id);
+}
+
+/// The tet that contains p, tried by brute force: finite and closed, or a ghost with p strictly beyond.
+template <class Sites>
+TetId scan(const TetComplex& complex, const Sites& sites, const Vec3& p) {
+  const auto holds = [&](TetId t) {
+    const int infinite = infinite_local(complex, t);
+    if (infinite >= 0) return side(complex, sites, t, infinite, p) > 0;
+    for (int i = 0; i < 4; ++i) {
+      if (side(complex, sites, t, i, p) < 0) return false;
+    }
+    return true;
+  };
+  for (std::size_t slot = 0; slot < complex.slots(); ++slot) {
+    const TetId t(slot);
+    if (complex.is_alive(t) && holds(t)) return t;
+  }
+  return TetId();
+}
 
 /// The tet that contains p: finite and closed, or a ghost whose hull facet has p strictly beyond. Randomised visibility
 /// walk; after a bound on its steps (it may cycle where the tetrahedralization is not Delaunay) every tet is tried.
 /// Invalid only if there is no tet, or the hull is not convex.
-TetId walk(const TetComplex& complex, const Sites& sites, const Vec3& p, TetId start, Stream& stream);
+template <class Sites>
+TetId walk(const TetComplex& complex, const Sites& sites, const Vec3& p, TetId start, Stream& stream) {
+  if (!start.valid()) return scan(complex, sites, p);
+  const int infinite = infinite_local(complex, start);
+  TetId t = infinite >= 0 ? complex.neighbour(start, infinite) : start;
+  TetId previous;
+  // So many steps cost about a fourth of the scan.
+  for (std::size_t steps = 1000 + complex.slots() / 8; steps > 0; --steps) {
+    const std::uint32_t turn_by = stream.next();
+    bool moved = false;
+    for (std::uint32_t k = 0; k < 4 && !moved; ++k) {
+      const int i = static_cast<int>((turn_by + k) & 3U);
+      const TetId next = complex.neighbour(t, i);
+      if (next == previous || side(complex, sites, t, i, p) >= 0) continue;
+      previous = t;
+      t = next;
+      moved = true;
+    }
+    if (!moved || complex.is_ghost(t)) return t;
+  }
+  return scan(complex, sites, p);
+}
 
 /// A finite tet with its four ghosts; orient3d(a,b,c,d) must be positive. Returns the finite tet.
 TetId add_first_tet(TetComplex& complex, VertexId a, VertexId b, VertexId c, VertexId d);
+
+/// The directed edges of a cavity's boundary, each with the new tet behind the facet that walks it so: its neighbour is
+/// behind the reversed edge. Vertices are numbered as they come, for a square table.
+class EdgeTable {
+ public:
+  static constexpr std::uint32_t kMostVertices = 64;
+  using Numbers = std::array<std::uint32_t, 3>;
+
+  /// A sphere of F triangles has F / 2 + 2 vertices.
+  static bool fits(std::size_t facets) { return facets / 2 + 2 <= kMostVertices; }
+  void clear() { named_ = 0; }
+  /// `known` belongs to v; what it holds is v's number if the table agrees, so nothing has to be cleared there.
+  std::uint32_t number_of(VertexId v, std::uint32_t& known) {
+    if (known >= named_ || names_[known] != v) {
+      known = named_++;
+      names_[known] = v;
+    }
+    return known;
+  }
+  void enter(const Numbers& facet, TetId t) {
+    const auto [a, b, c] = facet;
+    beyond_[a][b] = beyond_[b][c] = beyond_[c][a] = t;
+  }
+  /// Of the tet whose local vertices 0, 1, 2 are the facet: the neighbours opposite these, in order.
+  std::array<TetId, 3> neighbours(const Numbers& facet) const {
+    const auto [a, b, c] = facet;
+    return {beyond_[c][b], beyond_[a][c], beyond_[b][a]};
+  }
+
+ private:
+  std::array<VertexId, kMostVertices> names_{};  ///< the vertex of each number
+  std::uint32_t named_ = 0;
+  std::array<std::array<TetId, kMostVertices>, kMostVertices> beyond_{};
+};
 
 /// Replaces balls of tets by stars. The scratch arrays live as long as the object.
 class StarBuilder {
@@ -101,26 +198,12 @@ class StarBuilder {
   std::size_t bytes() const { return numbers_.capacity() * sizeof(std::uint32_t); }
 
  private:
-  static constexpr std::uint32_t kMostVertices = 64;  ///< of a boundary that is glued by table
-
   void add_tets(TetComplex& complex, VertexId v, std::span<const TetFacet> boundary, std::vector<TetId>& star);
   void glue_by_table(TetComplex& complex, std::span<const TetId> star);
   void glue_by_turning(TetComplex& complex, std::span<const TetFacet> boundary, std::span<const TetId> star) const;
-  std::uint32_t number_of(VertexId v) {
-    std::uint32_t& number = numbers_[v.value() + 2U];  // the infinite vertex wraps to 0
-    if (number >= named_ || names_[number] != v) {
-      number = named_++;
-      names_[number] = v;
-    }
-    return number;
-  }
 
-  /// numbers_[v + 2] is v's number if names_ agrees; nothing has to be cleared.
-  std::vector<std::uint32_t> numbers_;
-  std::array<VertexId, kMostVertices> names_{};
-  std::uint32_t named_ = 0;
-  /// The new tet that has the edge from one numbered vertex to another.
-  std::array<std::array<TetId, kMostVertices>, kMostVertices> beyond_{};
+  std::vector<std::uint32_t> numbers_;  ///< of v at v + 2 (the infinite vertex wraps to 0), for the table
+  EdgeTable table_;
 };
 
 }  // namespace curvetet::kernel

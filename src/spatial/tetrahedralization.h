@@ -107,7 +107,7 @@ class Tetrahedralization {
 
  private:
   friend class CavitySearch;
-  kernel::Sites sites() const { return {vertices_->positions(), nullptr}; }
+  kernel::Sites sites() const { return {vertices_->positions()}; }
   /// The star in the order of a flood; stops at the first tet that `until` holds for, which becomes the first of `out`.
   template <class Until>
   void flood_star(VertexId v, std::vector<TetId>& out, const Until& until) const;
