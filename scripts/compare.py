@@ -28,6 +28,16 @@ from netgen.meshing import MeshingParameters
 geometry = LoadOCCGeometry(sys.argv[1])
 mesh = geometry.GenerateMesh(mp=MeshingParameters(maxh=float(sys.argv[2]), curvaturesafety=float(sys.argv[4]) / 6.283185307))
 mesh.Export(sys.argv[3], "Gmsh2 Format")
+# Its export calls the format 2.0 and lists the nodes of tets the other way round, which is no fault of the mesh.
+with open(sys.argv[3]) as file:
+    lines = file.read().split("\\n")
+lines[1] = "2.2 0 8"
+for i in range(lines.index("$Elements") + 2, lines.index("$EndElements")):
+    words = lines[i].split()
+    if words[1] == "4":
+        lines[i] = " ".join([*words[:-2], words[-1], words[-2]])
+with open(sys.argv[3], "w") as file:
+    file.write("\\n".join(lines))
 """
 
 
