@@ -135,6 +135,7 @@ void check_overlap(const Mesh& mesh, const Topology& topology, Context& context,
   std::sort(used.begin(), used.end());
   used.erase(std::unique(used.begin(), used.end()), used.end());
   std::vector<Box3> boxes;
+  boxes.reserve(used.size());
   for (const std::uint32_t& v : used) boxes.push_back(box_of(mesh, std::span(&v, 1)));
   const BoxTree tree(boxes);
   std::vector<std::vector<std::uint32_t>> inside(mesh.tets.size());
