@@ -35,13 +35,13 @@ struct Points {
 [[gnu::always_inline]] inline Points seen_from(const Site* sites, VertexId a, VertexId b, VertexId c, VertexId d,
                                                const Vec3& p) {
   const Four row0 = row(sites, a), row1 = row(sites, b), row2 = row(sites, c), row3 = row(sites, d);
-  const Four even01 = __builtin_shuffle(row0, row1, Bits{0, 4, 2, 6});  // x0 x1 z0 z1
-  const Four even23 = __builtin_shuffle(row2, row3, Bits{0, 4, 2, 6});  // x2 x3 z2 z3
-  const Four odd01 = __builtin_shuffle(row0, row1, Bits{1, 5, 3, 7});   // y0 y1, then what is no coordinate
-  const Four odd23 = __builtin_shuffle(row2, row3, Bits{1, 5, 3, 7});   // y2 y3
-  return {__builtin_shuffle(even01, even23, Bits{0, 1, 4, 5}) - p.x,
-          __builtin_shuffle(odd01, odd23, Bits{0, 1, 4, 5}) - p.y,
-          __builtin_shuffle(even01, even23, Bits{2, 3, 6, 7}) - p.z};
+  const Four even01 = __builtin_shufflevector(row0, row1, 0, 4, 2, 6);  // x0 x1 z0 z1
+  const Four even23 = __builtin_shufflevector(row2, row3, 0, 4, 2, 6);  // x2 x3 z2 z3
+  const Four odd01 = __builtin_shufflevector(row0, row1, 1, 5, 3, 7);   // y0 y1, then what is no coordinate
+  const Four odd23 = __builtin_shufflevector(row2, row3, 1, 5, 3, 7);   // y2 y3
+  return {__builtin_shufflevector(even01, even23, 0, 1, 4, 5) - p.x,
+          __builtin_shufflevector(odd01, odd23, 0, 1, 4, 5) - p.y,
+          __builtin_shufflevector(even01, even23, 2, 3, 6, 7) - p.z};
 }
 
 [[gnu::always_inline]] inline Four minor(const Points& a, const Points& b) { return a.x * b.y - a.y * b.x; }
