@@ -2,8 +2,10 @@
 // culprit. Two facets of one sheet that lie on it and cross all the same are thinned out instead. Where facets pass
 // through each other by more than they leave their faces, or lie on one another's, round after round, the faces
 // themselves cross and no size helps. That crossings become more says nothing: those of a very thin wall do so for many
-// rounds before they become fewer. Rejected: emptying equatorial spheres of all foreign vertices (the paper's rule),
-// which on a thin shell asks for elements as small as the wall is thin though no triangle crosses another.
+// rounds before they become fewer.
+//
+// Rejected: emptying equatorial spheres of all foreign vertices (the paper's rule), which on a thin shell asks for
+// elements as small as the wall is thin though no triangle crosses another.
 #include "boundary/cure_crossings.h"
 
 #include <fmt/format.h>
@@ -126,12 +128,14 @@ class CrossingCure {
       const auto foot = surface.project(p, guess);
       return foot && distance(surface.value(*foot), p) <= 8 * kGrid ? foot : std::nullopt;
     };
+    // Hardly any facet gets beyond its first corner.
+    if (!std::all_of(facet.vertices.begin(), facet.vertices.end(),
+                     [&](VertexId v) { return place_of(conjoint_.vertices().position(v)).has_value(); }))
+      return false;
     const auto below =
         foot_of(conjoint_, facet.face, conjoint_.boundary().faces[facet.face].triangle(facet.triangle).node);
     const auto middle = below ? place_of(conjoint_.model().faces[facet.face].surface->value(below->uv)) : std::nullopt;
-    return middle && mesh.locate(mesh.chart.to_chart(*middle)) &&
-           std::all_of(facet.vertices.begin(), facet.vertices.end(),
-                       [&](VertexId v) { return place_of(conjoint_.vertices().position(v)).has_value(); });
+    return middle && mesh.locate(mesh.chart.to_chart(*middle));
   }
 
   bool faces_cross() const { return rounds_through_ >= kRoundsThrough; }

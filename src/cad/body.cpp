@@ -5,6 +5,7 @@
 #include <TopExp.hxx>
 #include <algorithm>
 #include <set>
+#include <utility>
 
 namespace curvetet {
 
@@ -59,6 +60,12 @@ std::vector<char> suppressed_edges(const CadBody& body) {
   std::vector<char> suppressed{0};
   for (const Label& label : body.edges) suppressed.push_back(ids.contains(label.cad_id) ? 1 : 0);
   return suppressed;
+}
+
+void sort_suppressed(CadBody& body) {
+  std::sort(body.suppressed.begin(), body.suppressed.end(), [](const auto& a, const auto& b) {
+    return std::make_pair(a.kind, a.label.cad_id) < std::make_pair(b.kind, b.label.cad_id);
+  });
 }
 
 double volume_of(const TopoDS_Shape& shape) {

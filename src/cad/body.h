@@ -49,6 +49,9 @@ TopTools_IndexedMapOfShape sub_shapes(const TopoDS_Shape& shape, TopAbs_ShapeEnu
 /// By number in the map of edges: is it suppressed? The shape has it still.
 std::vector<char> suppressed_edges(const CadBody& body);
 
+/// Brings `suppressed` into its order.
+void sort_suppressed(CadBody& body);
+
 /// Signed volume within the faces of a shape, each integrated adaptively.
 double volume_of(const TopoDS_Shape& shape);
 

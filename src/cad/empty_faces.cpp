@@ -7,7 +7,8 @@
 #include <BRepBuilderAPI_Sewing.hxx>
 #include <BRepTools_ReShape.hxx>
 #include <TopExp_Explorer.hxx>
-#include <algorithm>
+#include <cstdint>
+#include <set>
 #include <vector>
 
 #include "cad/narrow_faces.h"
@@ -50,17 +51,18 @@ void sew_others(const TopoDS_Shape& solid, const TopTools_IndexedMapOfShape& emp
 }  // namespace
 
 bool drop_empty_faces(CadBody& body, double width) {
-  const TopTools_IndexedMapOfShape faces = sub_shapes(body.shape, TopAbs_FACE);
-  TopTools_IndexedMapOfShape empty;
+  std::set<std::uint32_t> ids;
   std::vector<SuppressedDetail> dropped;
   for (const std::vector<NarrowFace>& group : narrow_faces(body, width))
     for (const NarrowFace& face : group) {
-      const auto label = std::find_if(body.faces.begin(), body.faces.end(),
-                                      [&](const Label& one) { return one.cad_id == face.cad_id; });
-      empty.Add(faces(static_cast<int>(label - body.faces.begin()) + 1));
-      dropped.push_back({SuppressedDetail::Kind::face, *label, face.width, face.place});
+      ids.insert(face.cad_id);
+      dropped.push_back(detail_of(body, face));
     }
   if (dropped.empty()) return false;
+  const TopTools_IndexedMapOfShape faces = sub_shapes(body.shape, TopAbs_FACE);
+  TopTools_IndexedMapOfShape empty;
+  for (int f = 1; f <= faces.Extent(); ++f)
+    if (ids.contains(body.faces[static_cast<std::size_t>(f - 1)].cad_id)) empty.Add(faces(f));
   const Handle(BRepTools_ReShape) change = new BRepTools_ReShape;
   const TopTools_IndexedMapOfShape solids = sub_shapes(body.shape, TopAbs_SOLID);
   for (int i = 1; i <= solids.Extent(); ++i) sew_others(solids(i), empty, width, *change);
@@ -68,6 +70,7 @@ bool drop_empty_faces(CadBody& body, double width) {
   for (const SuppressedDetail& detail : dropped)
     body.notes.push_back({fmt::format("face {}", detail.label.cad_id), "has no area and is left out"});
   body.suppressed.insert(body.suppressed.end(), dropped.begin(), dropped.end());
+  sort_suppressed(body);
   return true;
 }
 

@@ -94,6 +94,12 @@ DisjointSets connected(const std::vector<TopoDS_Shape>& faces) {
 
 }  // namespace
 
+SuppressedDetail detail_of(const CadBody& body, const NarrowFace& face) {
+  const auto label =
+      std::find_if(body.faces.begin(), body.faces.end(), [&](const Label& one) { return one.cad_id == face.cad_id; });
+  return {SuppressedDetail::Kind::face, *label, face.width, face.place};
+}
+
 std::vector<std::vector<NarrowFace>> narrow_faces(const CadBody& body, double length) {
   const TopTools_IndexedMapOfShape faces = sub_shapes(body.shape, TopAbs_FACE);
   const std::vector<char> of_solid = faces_of_solids(body, faces);

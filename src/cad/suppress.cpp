@@ -110,9 +110,7 @@ class Suppressor {
   void run() {
     for (const std::vector<NarrowFace>& group : narrow_faces(body_, length_)) remove_group(group);
     join_edges();
-    std::sort(body_.suppressed.begin(), body_.suppressed.end(), [](const auto& a, const auto& b) {
-      return std::make_pair(a.kind, a.label.cad_id) < std::make_pair(b.kind, b.label.cad_id);
-    });
+    sort_suppressed(body_);
   }
 
  private:
@@ -220,11 +218,7 @@ class Suppressor {
   }
 
   void commit(CadBody next, const std::vector<NarrowFace>& group) {
-    for (const NarrowFace& face : group) {
-      const auto label = std::find_if(body_.faces.begin(), body_.faces.end(),
-                                      [&](const Label& one) { return one.cad_id == face.cad_id; });
-      next.suppressed.push_back({SuppressedDetail::Kind::face, *label, face.width, face.place});
-    }
+    for (const NarrowFace& face : group) next.suppressed.push_back(detail_of(body_, face));
     body_ = std::move(next);
   }
 

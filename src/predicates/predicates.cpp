@@ -15,7 +15,6 @@
 
 #include <array>
 #include <cstdlib>
-#include <utility>
 
 #include "predicates/filters.h"
 
@@ -214,14 +213,7 @@ int insphere(Vec3 a, Vec3 b, Vec3 c, Vec3 d, Vec3 e) {
 
 int insphere_tie(const std::array<Vec3, 5>& points, const std::array<VertexId, 5>& ids) {
   ++predicate_counts().perturbed;
-  // The coefficient of a point's height in the determinant: its place is taken by e, or it is e.
-  const auto coefficient = [&](std::size_t raised) {
-    std::array<const Vec3*, 5> p{&points[0], &points[1], &points[2], &points[3], &points[4]};
-    std::swap(p[raised], p[4]);
-    const int filtered = filters::orient3d(*p[0], *p[1], *p[2], *p[3]);
-    const int sign = filtered != filters::kUnknown ? filtered : rungs::orient3d_exact(*p[0], *p[1], *p[2], *p[3]);
-    return raised == 4 ? -sign : sign;
-  };
+  const auto& [a, b, c, d, e] = points;
   unsigned tried = 0;
   for (int round = 0; round < 5; ++round) {
     // The largest id not yet tried: the first mostly decides, so nothing is sorted.
@@ -230,7 +222,13 @@ int insphere_tie(const std::array<Vec3, 5>& points, const std::array<VertexId, 5
       if ((tried >> k & 1U) == 0 && (raised == 5 || ids[raised] < ids[k])) raised = k;
     }
     tried |= 1U << raised;
-    if (const int sign = coefficient(raised); sign != 0) return sign;
+    // The coefficient of the raised point's height in the determinant.
+    const int coefficient = raised == 0   ? orient3d(e, b, c, d)
+                            : raised == 1 ? orient3d(a, e, c, d)
+                            : raised == 2 ? orient3d(a, b, e, d)
+                            : raised == 3 ? orient3d(a, b, c, e)
+                                          : -orient3d(a, b, c, d);
+    if (coefficient != 0) return coefficient;
   }
   return 0;
 }

@@ -1,7 +1,4 @@
-// Space: the boundary facets meet only where they share vertices, and no vertex of theirs lies in a foreign tet. All
-// exact. Nothing else can overlap: how many tets cover a point changes at facets of the boundary only, so a place that
-// two cover ends at one that another tet covers as well; and as no facet of the boundary crosses another, so it is all
-// over the surface that the facet belongs to, at its vertices, too.
+// Space: the boundary facets meet only where they share vertices, and no vertex lies in a foreign tet. All exact.
 //
 // Two triangles, neither collinear, and their common vertices:
 //   none: they meet exactly if an edge of one meets the other triangle;
@@ -130,13 +127,12 @@ void check_self_intersection(const Mesh& mesh, const Topology& topology, Context
 
 void check_overlap(const Mesh& mesh, const Topology& topology, Context& context, Findings& findings) {
   std::vector<std::uint32_t> used;
-  for (const BoundaryFacet& facet : topology.boundary)
-    used.insert(used.end(), facet.vertices.begin(), facet.vertices.end());
-  std::sort(used.begin(), used.end());
-  used.erase(std::unique(used.begin(), used.end()), used.end());
   std::vector<Box3> boxes;
-  boxes.reserve(used.size());
-  for (const std::uint32_t& v : used) boxes.push_back(box_of(mesh, std::span(&v, 1)));
+  for (std::uint32_t v = 0; v < mesh.points.size(); ++v) {
+    if (topology.used[v] == 0) continue;
+    used.push_back(v);
+    boxes.push_back(box_of(mesh, std::span(&v, 1)));
+  }
   const BoxTree tree(boxes);
   std::vector<std::vector<std::uint32_t>> inside(mesh.tets.size());
   in_blocks(context, mesh.tets.size(), [&](std::size_t begin, std::size_t end) {

@@ -28,9 +28,8 @@ namespace curvetet {
 
 namespace {
 
-constexpr double kGrid = 0x1p-42;          ///< every coordinate is a multiple (predicates.h)
-constexpr std::int64_t kCoarse = 1 << 20;  ///< grid steps between points of a lattice, at least
-constexpr int kHilbertBits = 16;           ///< per coordinate
+constexpr double kGrid = 0x1p-42;  ///< every coordinate is a multiple (predicates.h)
+constexpr int kHilbertBits = 16;   ///< per coordinate
 constexpr std::size_t kSmallestRound = 64;
 constexpr int kRoundBits = 3;  ///< all rounds before one hold 2^-kRoundBits of the points up to it
 
@@ -97,9 +96,7 @@ class Builder {
       for (const double x : {p.x, p.y, p.z}) bits |= static_cast<std::int64_t>(x / kGrid);
     }
     exact_ = kernel::exact_below(kGrid * static_cast<double>(bits & -bits));
-    on_lattice_ = (bits & -bits) > kCoarse;
     complex_.reserve(7 * order.size() + 64);
-    star_builder_.cover_vertices(order.size());
   }
 
   Status run(const Context& context) {
@@ -108,14 +105,22 @@ class Builder {
       if (k % 1024 == 0 && context.should_stop()) return context.stop_error("tetrahedralization");
       if (const VertexId twin = insert(VertexId(k)); twin.valid()) return same_place(sites_[k], sites_[twin.value()]);
     }
-    rename();
     return Done{};
   }
 
-  /// After run: each vertex with a tet that has it.
-  template <class Take>
-  void for_each_vertex(const Take& take) const {
-    for (const Site& site : sites_) take(site.id, TetId(site.number));
+  /// After run, and once: from local numbers to the caller's ids; notes a tet of each vertex.
+  void rename(IndexedVector<VertexId, TetId>& tet_of) {
+    TetComplex::Tet* const all = complex_.tets();
+    for (std::size_t slot = 0; slot < complex_.slots(); ++slot) {
+      if (!complex_.is_alive(TetId(slot))) continue;
+      for (VertexId& v : all[slot].vertices) {
+        if (v == kInfinite) continue;
+        Site& site = sites_[v.value()];
+        site.number = static_cast<std::uint32_t>(slot);
+        v = site.id;
+      }
+    }
+    for (const Site& site : sites_) tet_of[site.id] = TetId(site.number);
   }
 
  private:
@@ -231,8 +236,8 @@ class Builder {
     }
     const unsigned asked = fresh & finite;
     unsigned conflicts = 0, left = fresh;
-    // One alone is cheaper by itself, unless that knows less.
-    if ((asked & (asked - 1)) != 0 || (asked != 0 && on_lattice_)) {
+    // One alone is cheaper by itself.
+    if ((asked & (asked - 1)) != 0) {
       const auto some = static_cast<std::size_t>(std::countr_zero(asked));
       const auto corners = [&](std::size_t i) -> const TetComplex::Vertices& {
         return all[tet.neighbours[(asked >> i & 1U) != 0 ? i : some].value()].vertices;
@@ -298,26 +303,11 @@ class Builder {
     std::copy(star_.begin(), star_.end(), tets_.begin());
   }
 
-  /// From local numbers to the caller's ids; notes a tet of each site.
-  void rename() {
-    TetComplex::Tet* const all = complex_.tets();
-    for (std::size_t slot = 0; slot < complex_.slots(); ++slot) {
-      if (!complex_.is_alive(TetId(slot))) continue;
-      for (VertexId& v : all[slot].vertices) {
-        if (v == kInfinite) continue;
-        Site& site = sites_[v.value()];
-        site.number = static_cast<std::uint32_t>(slot);
-        v = site.id;
-      }
-    }
-  }
-
   TetComplex& complex_;
   std::vector<Site> sites_;
   kernel::Stream stream_;
   const kernel::InsphereFour insphere_four_ = kernel::insphere_four();
-  double exact_ = 0;         ///< see kernel::exact_below
-  bool on_lattice_ = false;  ///< all coordinates are multiples of a coarser step than the grid's
+  double exact_ = 0;  ///< see kernel::exact_below
   TetId last_;
   kernel::StarBuilder star_builder_;
   // The cavity, then the star in its place: tet k of the star is behind wall k. Only the counted entries are in use.
@@ -348,7 +338,7 @@ Status Tetrahedralization::build(std::span<const VertexId> vertices, const Conte
     return status;
   }
   cover_vertices();
-  builder.for_each_vertex([this](VertexId v, TetId t) { vertex_tet_[v] = t; });
+  builder.rename(vertex_tet_);
   return Done{};
 }
 

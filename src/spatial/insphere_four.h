@@ -16,6 +16,8 @@ struct alignas(32) Site {
   std::uint32_t number = 0;  ///< in the boundary of the present cavity
 };
 
+static_assert(sizeof(Site) == 32, "read as a vector of four doubles");
+
 /// One bit a lane.
 struct Verdicts {
   unsigned known = 0;   ///< the sign is certain
@@ -27,9 +29,10 @@ struct Verdicts {
 /// power of two (see filters::Insphere::narrow).
 double exact_below(double power);
 
+using Corners = std::array<VertexId, 4>;  ///< of a tet
+
 /// Of the spheres of four finite tets; `exact` is what exact_below says. The bound is the first of filters::Insphere,
 /// so that the verdicts do not depend on the machine's vectors.
-using Corners = std::array<VertexId, 4>;
 using InsphereFour = Verdicts (*)(const Site* sites, const Corners& first, const Corners& second, const Corners& third,
                                   const Corners& fourth, const Vec3& p, double exact);
 

@@ -12,7 +12,8 @@
 
 namespace curvetet::kernel {
 
-/// Coordinates by the complex's vertex ids, and the ids by which ties are broken. Building has sites of its own.
+/// Coordinates by the complex's vertex ids, and the ids by which ties are broken. Building has sites of its own, so
+/// that what follows is for any.
 struct Sites {
   const Vec3* positions = nullptr;
   const Vec3& position(VertexId v) const { return positions[v.value()]; }
@@ -60,8 +61,8 @@ class VertexSet {
 };
 
 /// Sign of orient3d of the tet with local vertex i replaced by p; for a ghost, i must be its infinite vertex.
-template <class Sites>
-int side(const TetComplex& complex, const Sites& sites, TetId t, int i, const Vec3& p) {
+template <class AnySites>
+int side(const TetComplex& complex, const AnySites& sites, TetId t, int i, const Vec3& p) {
   const TetComplex::Vertices& v = complex.vertices(t);
   const std::array<int, 3>& f = kFacet[static_cast<std::size_t>(i)];
   const Vec3& a = sites.position(v[static_cast<std::size_t>(f[0])]);
@@ -75,20 +76,16 @@ int side(const TetComplex& complex, const Sites& sites, TetId t, int i, const Ve
 inline int infinite_local(const TetComplex& complex, TetId t) { return complex.local(t, kInfinite); }
 
 /// True if the perturbed sphere of a finite tet, on which p is, holds it.
-template <class Sites>
-bool in_conflict_by_id(const Sites& sites, const TetComplex::Vertices& v, const Vec3& p, VertexId tie_id) {
-  // The highest is raised most: p out of the sphere, if it is p.
-  if (std::max(std::max(sites.tie_id(v[0]), sites.tie_id(v[1])), std::max(sites.tie_id(v[2]), sites.tie_id(v[3]))) <
-      tie_id)
-    return false;
+template <class AnySites>
+bool in_conflict_by_id(const AnySites& sites, const TetComplex::Vertices& v, const Vec3& p, VertexId tie_id) {
   return insphere_tie({sites.position(v[0]), sites.position(v[1]), sites.position(v[2]), sites.position(v[3]), p},
                       {sites.tie_id(v[0]), sites.tie_id(v[1]), sites.tie_id(v[2]), sites.tie_id(v[3]), tie_id}) > 0;
 }
 
 /// True if the perturbed sphere of the tet holds p. A ghost is in conflict if p lies strictly beyond its hull facet, or
 /// in the facet's plane and inside the finite neighbour's sphere, which cuts the plane in the facet's circle.
-template <class Sites>
-bool in_conflict(const TetComplex& complex, const Sites& sites, TetId t, const Vec3& p, VertexId tie_id) {
+template <class AnySites>
+bool in_conflict(const TetComplex& complex, const AnySites& sites, TetId t, const Vec3& p, VertexId tie_id) {
   if (complex.is_ghost(t)) {
     const int infinite = infinite_local(complex, t);
     const int beyond = side(complex, sites, t, infinite, p);
@@ -103,8 +100,8 @@ bool in_conflict(const TetComplex& complex, const Sites& sites, TetId t, const V
 }
 
 /// The tet that contains p, tried by brute force: finite and closed, or a ghost with p strictly beyond.
-template <class Sites>
-TetId scan(const TetComplex& complex, const Sites& sites, const Vec3& p) {
+template <class AnySites>
+TetId scan(const TetComplex& complex, const AnySites& sites, const Vec3& p) {
   const auto holds = [&](TetId t) {
     const int infinite = infinite_local(complex, t);
     if (infinite >= 0) return side(complex, sites, t, infinite, p) > 0;
@@ -123,8 +120,8 @@ TetId scan(const TetComplex& complex, const Sites& sites, const Vec3& p) {
 /// The tet that contains p: finite and closed, or a ghost whose hull facet has p strictly beyond. Randomised visibility
 /// walk; after a bound on its steps (it may cycle where the tetrahedralization is not Delaunay) every tet is tried.
 /// Invalid only if there is no tet, or the hull is not convex.
-template <class Sites>
-TetId walk(const TetComplex& complex, const Sites& sites, const Vec3& p, TetId start, Stream& stream) {
+template <class AnySites>
+TetId walk(const TetComplex& complex, const AnySites& sites, const Vec3& p, TetId start, Stream& stream) {
   if (!start.valid()) return scan(complex, sites, p);
   const int infinite = infinite_local(complex, start);
   TetId t = infinite >= 0 ? complex.neighbour(start, infinite) : start;

@@ -182,6 +182,24 @@ void add_copy(Mesh& mesh, double scale, Vec3 by) {
   }
 }
 
+/// Four more tets in the place of one that stays, around a vertex of their own: none of their outer vertices is
+/// foreign.
+void add_star_in(Mesh& mesh, std::size_t tet) {
+  const auto corners = mesh.tets[tet];
+  const auto middle = static_cast<std::uint32_t>(mesh.points.size());
+  Point p{};
+  for (const std::uint32_t v : corners)
+    for (std::size_t i = 0; i < 3; ++i) p[i] += 0.25 * mesh.points[v][i];
+  mesh.points.push_back(p);
+  mesh.nodes.push_back(mesh.nodes[corners[0]]);
+  for (std::size_t i = 0; i < 4; ++i) {
+    auto part = corners;
+    part[i] = middle;
+    mesh.tets.push_back(part);
+    mesh.tet_solid.push_back(mesh.tet_solid[tet]);
+  }
+}
+
 std::vector<Mutation> mutations() {
   constexpr Severity error = Severity::error, warning = Severity::warning;
   const double nan = std::numeric_limits<double>::quiet_NaN();
@@ -277,6 +295,7 @@ std::vector<Mutation> mutations() {
              [](Sample& s) {
                add_copy(s.mesh, 1, {0, 3, 0.1});
              })},
+      {"vertex_in_foreign_tet", false, error, spoil(small_ball, [](Sample& s) { add_star_in(s.mesh, 3); })},
       {"more_pieces_than_solids", true, error,
        spoil(small_ball,
              [](Sample& s) {
