@@ -1,8 +1,8 @@
 // Of two triangles that cross, the one farther from its face is refined: a flat facet on a flat face is never the
 // culprit. Two facets of one sheet that lie on it and cross all the same are thinned out instead. Where facets pass
-// through each other by more than they leave their faces, or lie on one another's, round after round, the faces
-// themselves cross and no size helps. That crossings become more says nothing: those of a very thin wall do so for many
-// rounds before they become fewer.
+// through each other by more than they leave their faces, round after round, the faces themselves cross and no size
+// helps. That crossings become more says nothing: those of a very thin wall do so for many rounds before they become
+// fewer.
 //
 // Rejected: emptying equatorial spheres of all foreign vertices (the paper's rule), which on a thin shell asks for
 // elements as small as the wall is thin though no triangle crosses another.
@@ -107,35 +107,11 @@ class CrossingCure {
     fewest_ = std::min(fewest_, left);
   }
 
-  /// Do two facets go through each other by more than they leave their faces, or lie on the other's face?
+  /// Do two facets go through each other by more than they leave their faces?
   bool through(const Pair& pair) {
     const auto [i, j] = pair;
     const double height = kHeights * (deviation_of(i) + deviation_of(j)) + 8 * kGrid;
-    return passes_through(i, j, height) || passes_through(j, i, height) || coincides(i, j) || coincides(j, i);
-  }
-
-  /// Does a facet lie on a face that it has nothing in common with? No size parts two faces in one place.
-  bool coincides(std::uint32_t i, std::uint32_t j) const {
-    const SurfaceTriangle &facet = triangles_[i], &other = triangles_[j];
-    const bool meet = std::any_of(facet.vertices.begin(), facet.vertices.end(), [&](VertexId v) {
-      return std::count(other.vertices.begin(), other.vertices.end(), v) > 0;
-    });
-    if (facet.face == other.face || meet) return false;
-    const FaceMesh& mesh = conjoint_.boundary().faces[other.face];
-    const Surface& surface = *conjoint_.model().faces[other.face].surface;
-    const Vec2 guess = mesh.chart.to_uv(mesh.node(mesh.triangle(other.triangle).node[0]).q);
-    const auto place_of = [&](Vec3 p) {
-      const auto foot = surface.project(p, guess);
-      return foot && distance(surface.value(*foot), p) <= 8 * kGrid ? foot : std::nullopt;
-    };
-    // Hardly any facet gets beyond its first corner.
-    if (!std::all_of(facet.vertices.begin(), facet.vertices.end(),
-                     [&](VertexId v) { return place_of(conjoint_.vertices().position(v)).has_value(); }))
-      return false;
-    const auto below =
-        foot_of(conjoint_, facet.face, conjoint_.boundary().faces[facet.face].triangle(facet.triangle).node);
-    const auto middle = below ? place_of(conjoint_.model().faces[facet.face].surface->value(below->uv)) : std::nullopt;
-    return middle && mesh.locate(mesh.chart.to_chart(*middle));
+    return passes_through(i, j, height) || passes_through(j, i, height);
   }
 
   bool faces_cross() const { return rounds_through_ >= kRoundsThrough; }

@@ -261,24 +261,6 @@ TEST(Crossings, OfFacesThatPassThroughEachOtherEndEarly) {
   }
 }
 
-// Two bent faces in one place cross at any size, though their facets never pass far through each other.
-TEST(Crossings, OfFacesInOnePlaceEndEarly) {
-  const Model model = make_tight_pin(2, 6);
-  for (const double size : {4.0, 1.0}) {
-    BoundaryRunOptions options{size, 12};
-    options.until = Until::crossings;
-    const auto run = run_boundary(model, options);
-    ASSERT_FALSE(HasFailure());
-    bool told = false;
-    for (const RecoveryFailure& failure : run->crossings.failures) {
-      EXPECT_EQ(failure.size, 0);
-      told |= failure.faces == std::vector{FaceId(1), FaceId(6)};
-    }
-    EXPECT_TRUE(told);
-    EXPECT_LE(run->crossings.rounds, 6) << size;
-  }
-}
-
 // What else crosses for now, as the two sides of a thin wall, is not told beside it.
 TEST(Crossings, OfFacesThatPassThroughEachOtherAreToldAlone) {
   const Model model = make_pierced_ball(5, 1, 14, 10, 0.05);

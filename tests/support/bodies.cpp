@@ -478,26 +478,6 @@ Model make_torus(double major, double minor) {
   return body.take();
 }
 
-Model make_tight_pin(double radius, double height) {
-  Revolution body(2 * radius, -height, height);
-  const double h = 0.5 * height;
-  const SolidId pin = body.solid(kPi * radius * radius * height);
-  Profile outline;
-  outline.left = pin;
-  outline.pieces = {straight_piece({0, -h}, {radius, -h}), straight_piece({radius, -h}, {radius, h}),
-                    straight_piece({radius, h}, {0, h})};
-  body.add(outline);
-  const SolidId tube = body.solid(3 * kPi * radius * radius * 2 * height);
-  body.add(
-      {{straight_piece({radius, -height}, {2 * radius, -height}),
-        straight_piece({2 * radius, -height}, {2 * radius, height}),
-        straight_piece({2 * radius, height}, {radius, height}), straight_piece({radius, height}, {radius, -height})},
-       tube,
-       SolidId(),
-       true});
-  return body.take();
-}
-
 Model make_tube(double outer, double inner, double height) {
   Revolution body(outer, 0, height);
   const SolidId solid = body.solid(kPi * (outer * outer - inner * inner) * height);

@@ -25,8 +25,6 @@ Model make_torus(double major, double minor);
 /// around it, if given, a sound ball with a cavity, shaped as a cylinder, that leaves a wall between its rims and the
 /// outside.
 Model make_pierced_ball(double ball, double radius, double height, double outer = 0, double wall = 0);
-/// No body, since two faces lie in one place: a pin in the bore of a longer tube that has its radius.
-Model make_tight_pin(double radius, double height);
 /// Cylinder with a coaxial bore: plane faces with two loops.
 Model make_tube(double outer, double inner, double height);
 /// Two spherical caps that meet in a sharp circle; `half_thickness` < radius of the rim.
