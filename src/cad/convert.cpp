@@ -38,8 +38,6 @@ constexpr double kInfinite = 1e50;
 constexpr double kLooseBox = 3;
 /// A solid whose volume over its area to the power 3/2 is less than this has none (a ball has 0.09).
 constexpr double kFlat = 1e-10;
-/// Of the body's diagonal: vertices farther apart are never joined, whatever their tolerances say.
-constexpr double kLargestJoin = 1e-4;
 constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
 
 /// A face as one shell of a solid uses it.
@@ -75,7 +73,7 @@ class Converter {
     if (const auto error = collect_shells()) return *error;
     mark_used();
     suppressed_ = suppressed_edges(body_);
-    joined_ = join_vertices(vertices_, edges_, kLargestJoin * loose_box_.diagonal(), suppressed_);
+    joined_ = join_vertices(vertices_, edges_, solids_, loose_box_.diagonal(), suppressed_);
     note_joined();
     make_parts(Frame::of(loose_box_));
     if (loose_box_.diagonal() > kLooseBox * model_.frame.length_to_cad(model_.box.diagonal())) {

@@ -14,18 +14,23 @@
 #include <gp_Pnt.hxx>
 #include <numeric>
 
+#include "cad/body.h"
+
 namespace curvetet {
 namespace {
 
 constexpr int kSamples = 16;
 constexpr double kMeant = 40;  ///< length over tolerance of a curve that is there for its own sake
+// Parts of the diagonal.
+constexpr double kLargest = 1e-4;   ///< vertices farther apart are never joined, whatever their tolerances say
+constexpr double kOnePlace = 1e-8;  ///< of two vertices that no edge connects; far below the hair of touching_edges.h
 
 class Joiner {
  public:
-  Joiner(const TopTools_IndexedMapOfShape& vertices, const TopTools_IndexedMapOfShape& edges, double largest)
-      : vertices_(vertices), edges_(edges), largest_(largest) {}
+  Joiner(const TopTools_IndexedMapOfShape& vertices, const TopTools_IndexedMapOfShape& edges, double diagonal)
+      : vertices_(vertices), edges_(edges), diagonal_(diagonal), largest_(kLargest * diagonal) {}
 
-  JoinedVertices run(const std::vector<char>& asked) {
+  JoinedVertices run(const std::vector<char>& asked, const TopTools_IndexedMapOfShape& solids) {
     const auto count = static_cast<std::size_t>(vertices_.Extent()) + 1;
     joined_.vertex.resize(count);
     std::iota(joined_.vertex.begin(), joined_.vertex.end(), 0);
@@ -38,6 +43,7 @@ class Joiner {
     joined_.point.assign(static_cast<std::size_t>(edges_.Extent()) + 1, 0);
     join_asked(asked);
     for (int e = 1; e <= edges_.Extent(); ++e) visit(e);
+    for (int s = 1; s <= solids.Extent(); ++s) join_in_place(solids(s));
     return std::move(joined_);
   }
 
@@ -109,6 +115,22 @@ class Joiner {
     return true;
   }
 
+  /// Where a solid touches itself its edges pair up only if their ends are the same (see touching_edges.h).
+  void join_in_place(const TopoDS_Shape& solid) {
+    std::vector<std::pair<double, int>> along;  // the first coordinate
+    const TopTools_IndexedMapOfShape own = sub_shapes(solid, TopAbs_VERTEX);
+    along.reserve(static_cast<std::size_t>(own.Extent()));
+    for (int v = 1; v <= own.Extent(); ++v) {
+      const int number = vertices_.FindIndex(own(v));
+      along.emplace_back(place(number).X(), number);
+    }
+    std::sort(along.begin(), along.end());
+    const double near = kOnePlace * diagonal_;
+    for (std::size_t i = 0; i < along.size(); ++i)
+      for (std::size_t k = i + 1; k < along.size() && along[k].first - along[i].first <= near; ++k)
+        if (place(along[i].second).Distance(place(along[k].second)) <= near) join(along[i].second, along[k].second);
+  }
+
   /// Makes one group of those of a and b, unless that would take a vertex farther than its own tolerance.
   bool join(int a, int b) {
     if (joined_.vertex[static_cast<std::size_t>(a)] == joined_.vertex[static_cast<std::size_t>(b)]) return true;
@@ -148,7 +170,7 @@ class Joiner {
 
   const TopTools_IndexedMapOfShape& vertices_;
   const TopTools_IndexedMapOfShape& edges_;
-  double largest_;
+  double diagonal_, largest_;
   JoinedVertices joined_;
   std::vector<std::vector<int>> members_;  ///< of the group that a vertex stands for
 };
@@ -156,8 +178,9 @@ class Joiner {
 }  // namespace
 
 JoinedVertices join_vertices(const TopTools_IndexedMapOfShape& vertices, const TopTools_IndexedMapOfShape& edges,
-                             double largest, const std::vector<char>& asked) {
-  return Joiner(vertices, edges, largest).run(asked);
+                             const TopTools_IndexedMapOfShape& solids, double diagonal,
+                             const std::vector<char>& asked) {
+  return Joiner(vertices, edges, diagonal).run(asked, solids);
 }
 
 }  // namespace curvetet

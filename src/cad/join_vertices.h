@@ -15,9 +15,11 @@ struct JoinedVertices {
 
 /// Joins the two ends of each edge that is asked for (by number; none if empty), chains of them into one vertex: the
 /// one that most edges meet in. Then joins the two ends of a degenerate edge, which is one point by definition, and
-/// those of an edge that lies wholly within the tolerance of its ends. The vertex with the tightest tolerance stands
-/// for all, and lies within the own tolerance of each. No two that are farther apart than `largest` are joined unasked.
+/// those of an edge that lies wholly within the tolerance of its ends. Last, vertices of one solid that are in one
+/// place, where it touches itself. The vertex with the tightest tolerance stands for all, and lies within the own
+/// tolerance of each. No two that are farther apart than a part of `diagonal` are joined unasked.
 JoinedVertices join_vertices(const TopTools_IndexedMapOfShape& vertices, const TopTools_IndexedMapOfShape& edges,
-                             double largest, const std::vector<char>& asked = {});
+                             const TopTools_IndexedMapOfShape& solids, double diagonal,
+                             const std::vector<char>& asked = {});
 
 }  // namespace curvetet

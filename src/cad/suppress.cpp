@@ -291,7 +291,7 @@ class Suppressor {
     const TopTools_IndexedMapOfShape vertices = sub_shapes(body.shape, TopAbs_VERTEX);
     const TopTools_IndexedMapOfShape edges = sub_shapes(body.shape, TopAbs_EDGE);
     const std::vector<char> asked = suppressed_edges(body);
-    const JoinedVertices joined = join_vertices(vertices, edges, 0, asked);
+    const JoinedVertices joined = join_vertices(vertices, edges, {}, 0, asked);
     double reach = 0;
     for (int e = 1; e <= edges.Extent(); ++e) {
       if (asked[static_cast<std::size_t>(e)] == 0) continue;

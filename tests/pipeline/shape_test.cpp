@@ -2,9 +2,12 @@
 #include <gtest/gtest.h>
 
 #include <BRepAlgoAPI_Cut.hxx>
+#include <BRepBuilderAPI_MakeFace.hxx>
+#include <BRepBuilderAPI_MakePolygon.hxx>
 #include <BRepBuilderAPI_NurbsConvert.hxx>
 #include <BRepPrimAPI_MakeBox.hxx>
 #include <BRepPrimAPI_MakeCylinder.hxx>
+#include <BRepPrimAPI_MakePrism.hxx>
 #include <BRep_Builder.hxx>
 #include <BinTools.hxx>
 #include <TopExp.hxx>
@@ -147,6 +150,31 @@ TEST(MeshOfAShape, LeavesTheShapeAsItWas) {
   ASSERT_TRUE(made) << made.error().message;
   EXPECT_FALSE(made.value().report.healing.empty());
   EXPECT_EQ(bytes_of(loose), before);
+}
+
+/// A ring whose ends touch along a line, each with edges and vertices of its own there.
+TopoDS_Shape ring_that_touches_itself() {
+  BRepBuilderAPI_MakePolygon profile;
+  for (const auto& [x, y] : std::vector<std::pair<double, double>>{
+           {0, 0}, {10, 0}, {10, 10}, {0, 10}, {1.5, 5}, {3, 7}, {7, 7}, {7, 3}, {3, 3}, {1.5, 5}})
+    profile.Add(gp_Pnt(x, y, 0));
+  profile.Close();
+  return BRepPrimAPI_MakePrism(BRepBuilderAPI_MakeFace(profile.Wire(), true).Face(), gp_Vec(0, 0, 4)).Shape();
+}
+
+TEST(MeshOfAShape, TouchesItselfWhereTheShapeDoes) {
+  for (const double size : {12.0, 6.0, 2.0}) {
+    Options options;
+    options.size = size;
+    Context context;
+    const Result<MeshOutput> made = mesh(ring_that_touches_itself(), options, context);
+    ASSERT_TRUE(made) << size << ": " << made.error().message;
+    EXPECT_TRUE(made.value().report.valid) << size;
+    const std::vector<std::string>& healing = made.value().report.healing;
+    EXPECT_TRUE(std::any_of(healing.begin(), healing.end(), [](const std::string& note) {
+      return note.find("where the body touches itself") != std::string::npos;
+    })) << size;
+  }
 }
 
 TEST(MeshOfAShape, RefusesWhatItCannotMesh) {
