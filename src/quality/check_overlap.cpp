@@ -13,6 +13,7 @@
 #include "quality/box_tree.h"
 #include "quality/checks.h"
 #include "quality/exact.h"
+#include "quality/point_tree.h"
 
 namespace curvetet::checks {
 namespace {
@@ -67,6 +68,17 @@ bool triangles_meet(const Mesh& mesh, Triangle s, Triangle t) {
 Box3 box_of(const Mesh& mesh, std::span<const std::uint32_t> vertices) {
   Box3 box;
   for (const std::uint32_t v : vertices) box.extend(vec(mesh.points[v]));
+  return box;
+}
+
+PointTree::Box box_around(const Mesh& mesh, const std::array<std::uint32_t, 4>& tet) {
+  PointTree::Box box{mesh.points[tet[0]], mesh.points[tet[0]]};
+  for (std::size_t i = 1; i < 4; ++i) {
+    for (std::size_t k = 0; k < 3; ++k) {
+      box.low[k] = std::min(box.low[k], mesh.points[tet[i]][k]);
+      box.high[k] = std::max(box.high[k], mesh.points[tet[i]][k]);
+    }
+  }
   return box;
 }
 
@@ -126,32 +138,28 @@ void check_self_intersection(const Mesh& mesh, const Topology& topology, Context
 }
 
 void check_overlap(const Mesh& mesh, const Topology& topology, Context& context, Findings& findings) {
-  std::vector<std::uint32_t> used;
-  std::vector<Box3> boxes;
-  for (std::uint32_t v = 0; v < mesh.points.size(); ++v) {
-    if (topology.used[v] == 0) continue;
-    used.push_back(v);
-    boxes.push_back(box_of(mesh, std::span(&v, 1)));
-  }
-  const BoxTree tree(boxes);
-  std::vector<std::vector<std::uint32_t>> inside(mesh.tets.size());
+  std::vector<PointTree::Item> used;
+  used.reserve(mesh.points.size());
+  for (std::uint32_t v = 0; v < mesh.points.size(); ++v)
+    if (topology.used[v] != 0) used.push_back({mesh.points[v], v});
+  const PointTree tree(std::move(used));
+  std::vector<std::vector<std::pair<std::size_t, std::uint32_t>>> inside((mesh.tets.size() + kBlock - 1) / kBlock);
   in_blocks(context, mesh.tets.size(), [&](std::size_t begin, std::size_t end) {
-    std::vector<std::uint32_t> near;
     for (std::size_t t = begin; t < end && !context.should_stop(); ++t) {
       if (topology.tet_sign[t] == 0) continue;
-      near.clear();
-      tree.overlaps(box_of(mesh, mesh.tets[t]), near);
-      for (const std::uint32_t i : near) {
-        const std::uint32_t v = used[i];
-        if (std::find(mesh.tets[t].begin(), mesh.tets[t].end(), v) != mesh.tets[t].end()) continue;
-        if (inside_or_on(mesh, t, topology.tet_sign[t], vec(mesh.points[v]))) inside[t].push_back(v);
-      }
+      const auto& tet = mesh.tets[t];
+      tree.within(box_around(mesh, tet), [&](const PointTree::Item& item) {
+        if (std::find(tet.begin(), tet.end(), item.id) != tet.end()) return;
+        if (inside_or_on(mesh, t, topology.tet_sign[t], vec(item.point)))
+          inside[begin / kBlock].emplace_back(t, item.id);
+      });
     }
   });
-  for (std::size_t t = 0; t < mesh.tets.size(); ++t) {
-    for (const std::uint32_t v : inside[t]) {
-      findings.add("vertex_in_foreign_tet", Severity::error,
-                   [&] { return fmt::format("node {} in tet {} at {}", v, t, place(vec(mesh.points[v]))); });
+  for (const auto& block : inside) {
+    for (const auto& [t, v] : block) {
+      findings.add("vertex_in_foreign_tet", Severity::error, [&, t = t, v = v] {
+        return fmt::format("node {} in tet {} at {}", v, t, place(vec(mesh.points[v])));
+      });
     }
   }
 }

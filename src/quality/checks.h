@@ -77,6 +77,9 @@ struct Topology {
 /// The uses of the facet with these ascending vertices.
 std::span<const FacetUse> uses_of(const Topology& topology, const std::array<std::uint32_t, 3>& ascending);
 
+/// Items of a block.
+inline constexpr std::size_t kBlock = 8192;
+
 /// body(begin, end) over fixed blocks of [0, n), in parallel.
 void in_blocks(const Context& context, std::size_t n, const std::function<void(std::size_t, std::size_t)>& body);
 

@@ -97,6 +97,9 @@ int sign_within(double det, double permanent, double bound) {
 
 int orientation_filter(Vec3 a, Vec3 b, Vec3 c, Vec3 d) {
   const Vec3 u = b - a, v = c - a, w = d - a;
+  // A difference of doubles is zero only if they are equal: four points of one plane across an axis, as CAD has many.
+  if ((u.x == 0 && v.x == 0 && w.x == 0) || (u.y == 0 && v.y == 0 && w.y == 0) || (u.z == 0 && v.z == 0 && w.z == 0))
+    return 0;
   const double yz = v.y * w.z, zy = v.z * w.y, zx = v.z * w.x, xz = v.x * w.z, xy = v.x * w.y, yx = v.y * w.x;
   const double det = u.x * (yz - zy) + u.y * (zx - xz) + u.z * (xy - yx);
   const double permanent = std::abs(u.x) * (std::abs(yz) + std::abs(zy)) +

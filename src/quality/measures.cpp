@@ -20,28 +20,44 @@ Vec3 circumcentre_numerator(Vec3 b, Vec3 c, Vec3 d) {
 
 double six_volumes(Vec3 b, Vec3 c, Vec3 d) { return dot(cross(b, c), d); }
 
+/// A dihedral angle as the arguments of an arc tangent.
+struct Opening {
+  double across = 0, along = 0;
+};
+
+double degrees(const Opening& opening) { return std::atan2(opening.across, opening.along) * (180 / std::numbers::pi); }
+
+/// By kEdge. The two facets at edge e are those opposite to the vertices of edge 5 - e.
+std::array<Opening, 6> dihedral_openings(Vec3 a, Vec3 b, Vec3 c, Vec3 d) {
+  const std::array<Vec3, 4> p{a, b, c, d};
+  const std::array<Vec3, 4> normals{cross(c - b, d - b), cross(d - a, c - a), cross(b - a, d - a), cross(c - a, b - a)};
+  const double volume6 = std::abs(six_volumes(b - a, c - a, d - a));
+  std::array<Opening, 6> openings;
+  for (std::size_t e = 0; e < 6; ++e) {
+    const auto end = [&](std::size_t edge, std::size_t i) { return static_cast<std::size_t>(kEdge[edge][i]); };
+    openings[e] = {distance(p[end(e, 0)], p[end(e, 1)]) * volume6,
+                   -dot(normals[end(5 - e, 0)], normals[end(5 - e, 1)])};
+  }
+  return openings;
+}
+
 }  // namespace
 
 double tet_volume(Vec3 a, Vec3 b, Vec3 c, Vec3 d) { return six_volumes(b - a, c - a, d - a) / 6; }
 
 std::array<double, 6> dihedral_angles(Vec3 a, Vec3 b, Vec3 c, Vec3 d) {
-  const std::array<Vec3, 4> p{a, b, c, d};
-  const double volume6 = std::abs(six_volumes(b - a, c - a, d - a));
+  const std::array<Opening, 6> openings = dihedral_openings(a, b, c, d);
   std::array<double, 6> angles{};
-  for (std::size_t e = 0; e < 6; ++e) {
-    const Vec3 origin = p[static_cast<std::size_t>(kEdge[e][0])];
-    const Vec3 edge = p[static_cast<std::size_t>(kEdge[e][1])] - origin;
-    const Vec3 n0 = cross(edge, p[static_cast<std::size_t>(kEdge[5 - e][0])] - origin);
-    const Vec3 n1 = cross(edge, p[static_cast<std::size_t>(kEdge[5 - e][1])] - origin);
-    angles[e] = std::atan2(norm(edge) * volume6, dot(n0, n1)) * (180 / std::numbers::pi);
-  }
+  std::transform(openings.begin(), openings.end(), angles.begin(), degrees);
   return angles;
 }
 
 double smallest_dihedral(Vec3 a, Vec3 b, Vec3 c, Vec3 d) {
   if (!(six_volumes(b - a, c - a, d - a) > 0)) return 0;
-  const std::array<double, 6> angles = dihedral_angles(a, b, c, d);
-  return *std::min_element(angles.begin(), angles.end());
+  const std::array<Opening, 6> openings = dihedral_openings(a, b, c, d);
+  return degrees(*std::min_element(openings.begin(), openings.end(), [](const Opening& p, const Opening& q) {
+    return p.across * q.along < q.across * p.along;  // both turn by less than half a turn
+  }));
 }
 
 double radius_ratio(Vec3 a, Vec3 b, Vec3 c, Vec3 d) {

@@ -18,7 +18,6 @@ namespace curvetet {
 namespace checks {
 namespace {
 
-constexpr std::size_t kBlock = 8192;
 constexpr std::size_t kRatioBins = 20, kAngleBins = 18;
 
 /// The part of a quality summary that one block of tets contributes.

@@ -8,6 +8,7 @@
 
 #include "quality/box_tree.h"
 #include "quality/exact.h"
+#include "quality/point_tree.h"
 
 namespace curvetet {
 namespace {
@@ -119,6 +120,33 @@ TEST(BoxTree, AgreesWithSearchingAll) {
       }
       EXPECT_EQ(found, expected);
       EXPECT_EQ(tree.nearest(p, [&](std::uint32_t j) { return norm2(centres[j] - p); }), nearest);
+    }
+  }
+}
+
+TEST(PointTree, AgreesWithSearchingAll) {
+  std::mt19937 random(12);
+  for (const std::size_t n : {0U, 1U, 8U, 9U, 17U, 700U}) {
+    for (const int grid : {3, 1000}) {  // on the coarse one most points have others in their place
+      std::uniform_int_distribution<int> step(0, grid);
+      const auto point = [&] { return Point{step(random) * 1.0, step(random) * 1.0, step(random) * 1.0}; };
+      std::vector<PointTree::Item> items;
+      for (std::uint32_t i = 0; i < n; ++i) items.push_back({point(), i});
+      const PointTree tree(items);
+      for (int i = 0; i < 50; ++i) {
+        PointTree::Box box{point(), point()};
+        for (std::size_t k = 0; k < 3; ++k)
+          if (box.low[k] > box.high[k]) std::swap(box.low[k], box.high[k]);
+        std::vector<std::uint32_t> found, expected;
+        tree.within(box, [&](const PointTree::Item& item) { found.push_back(item.id); });
+        std::sort(found.begin(), found.end());
+        for (const PointTree::Item& item : items) {
+          bool in = true;
+          for (std::size_t k = 0; k < 3; ++k) in = in && box.low[k] <= item.point[k] && item.point[k] <= box.high[k];
+          if (in) expected.push_back(item.id);
+        }
+        EXPECT_EQ(found, expected);
+      }
     }
   }
 }
