@@ -35,6 +35,8 @@ constexpr double kInsertionGain = 0.035;
 constexpr double kNeedleGoal = 5;
 constexpr double kLeastOverNeedle = 1;
 constexpr int kNeedleSweeps = 5;
+/// To flood the star of a vertex takes as long as to pass by so many tets.
+constexpr std::size_t kSlotsPerStar = 200;
 /// Attempts to insert that may fail in a round, besides two for each that succeeded: where a body is thinner than its
 /// facets are long, bad tets are the body's fault and every attempt fails.
 constexpr std::size_t kFailedInsertions = 100;
@@ -112,6 +114,10 @@ class Improvement {
     bad_.clear();
     std::sort(touched_.begin(), touched_.end());
     touched_.erase(std::unique(touched_.begin(), touched_.end()), touched_.end());
+    if (touched_.size() > complex_.slots() / kSlotsPerStar) {
+      collect_bad_with_touched();
+      return;
+    }
     for (VertexId v : touched_) {
       mesh_.star(v, star_);
       for (TetId t : star_) {
@@ -120,6 +126,19 @@ class Improvement {
     }
     std::sort(bad_.begin(), bad_.end());
     bad_.erase(std::unique(bad_.begin(), bad_.end()), bad_.end());
+  }
+
+  /// The same by a look at all tets, in order.
+  void collect_bad_with_touched() {
+    is_touched_.assign(vertices_.size(), 0);
+    for (const VertexId v : touched_) is_touched_[v] = 1;
+    for (std::size_t k = 0; k < complex_.slots(); ++k) {
+      const TetId t(k);
+      if (!is_inside(t)) continue;
+      const auto& v = complex_.vertices(t);
+      if ((is_touched_[v[0]] | is_touched_[v[1]] | is_touched_[v[2]] | is_touched_[v[3]]) != 0 && quality(t) < goal_)
+        bad_.push_back(t);
+    }
   }
 
   void reconnect() {
@@ -285,6 +304,7 @@ class Improvement {
   bool stopped_ = false;
   std::vector<TetId> bad_, star_;
   std::vector<VertexId> touched_, movable_;
+  IndexedVector<VertexId, char> is_touched_;
   StarFacets facets_;
   StarOptimiser optimiser_;
   ImproveResult result_;
