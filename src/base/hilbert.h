@@ -1,11 +1,11 @@
-// The Hilbert curve through the cells of a cube, by table. Internal to spatial.
+// The Hilbert curve through the cells of a cube, by table.
 #pragma once
 
 #include <array>
 #include <cstddef>
 #include <cstdint>
 
-namespace curvetet::kernel {
+namespace curvetet {
 
 /// How one level of the curve runs: by state, which is the corner where the curve enters (three bits) and 8 times the
 /// axis along which it leaves, and by octant (bit k: the upper half of axis k). An entry is the octant's number along
@@ -44,4 +44,4 @@ inline std::uint64_t hilbert_index(const std::array<std::uint32_t, 3>& cell, int
   return index;
 }
 
-}  // namespace curvetet::kernel
+}  // namespace curvetet

@@ -10,8 +10,8 @@ namespace curvetet {
 /// In Mesh::corner_nodes, of a CAD vertex that no mesh vertex lies at.
 inline constexpr std::uint32_t kNoNode = 0xFFFFFFFF;
 
-/// Tets with a region, the triangles of every T_Γ, the segments of every curve mesh. Order: by id; so the same bytes
-/// each time.
+/// Tets with a region, the triangles of every T_Γ, the segments of every curve mesh. Points are in order along a
+/// Hilbert curve, tets by their smallest point, the rest by id; so the same bytes each time.
 Mesh assemble(const Conjoint& conjoint, const Settings& settings);
 
 /// The body's entities with their labels; faces still without their boundary, all without boxes.

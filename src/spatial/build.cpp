@@ -18,8 +18,8 @@
 #include <string>
 #include <utility>
 
+#include "base/hilbert.h"
 #include "predicates/predicates.h"
-#include "spatial/hilbert.h"
 #include "spatial/insphere_four.h"
 #include "spatial/kernel.h"
 #include "spatial/tetrahedralization.h"
@@ -53,7 +53,7 @@ std::vector<VertexId> insertion_order(std::span<const VertexId> vertices, const 
   for (const VertexId v : vertices) {
     const Vec3 p = cells * (store.position(v) - box.low);
     const int early = std::min(rounds, std::countr_zero(mix(seed ^ v.value())) / kRoundBits);
-    const std::uint64_t place = kernel::hilbert_index(
+    const std::uint64_t place = hilbert_index(
         {static_cast<std::uint32_t>(p.x), static_cast<std::uint32_t>(p.y), static_cast<std::uint32_t>(p.z)},
         kHilbertBits);
     keys.emplace_back(static_cast<std::uint64_t>(rounds - early) << (3 * kHilbertBits) | place, v);

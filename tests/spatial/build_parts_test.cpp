@@ -6,9 +6,9 @@
 #include <random>
 #include <vector>
 
+#include "base/hilbert.h"
 #include "geometry/frame.h"
 #include "predicates/predicates.h"
-#include "spatial/hilbert.h"
 #include "spatial/insphere_four.h"
 
 namespace curvetet::kernel {
