@@ -38,27 +38,31 @@ enum class Origin : std::uint8_t {
 /// Positions are working coordinates on the grid (geometry/frame.h). Ids are never reused.
 class VertexStore {
  public:
+  /// In half a cache line: cavities are grown by positions alone.
+  struct alignas(32) Site {
+    Vec3 position;
+    Owner owner;
+  };
+
   VertexId add(Vec3 position, Owner owner, Vec2 parameter, Origin origin) {
-    positions_.push_back(position);
-    owners_.push_back(owner);
+    sites_.push_back({position, owner});
     parameters_.push_back(parameter);
     origins_.push_back(origin);
-    return VertexId(positions_.size() - 1);
+    return VertexId(sites_.size() - 1);
   }
-  std::size_t size() const { return positions_.size(); }
-  Vec3 position(VertexId v) const { return positions_[v.value()]; }
-  Owner owner(VertexId v) const { return owners_[v.value()]; }
+  std::size_t size() const { return sites_.size(); }
+  Vec3 position(VertexId v) const { return sites_[v.value()].position; }
+  Owner owner(VertexId v) const { return sites_[v.value()].owner; }
   /// (u,v) for a vertex on a face, (t,0) for one on an edge, zero otherwise.
   Vec2 parameter(VertexId v) const { return parameters_[v.value()]; }
   Origin origin(VertexId v) const { return origins_[v.value()]; }
   /// For smoothing; the new position must be on the grid.
-  void move(VertexId v, Vec3 position) { positions_[v.value()] = position; }
-  void set_owner(VertexId v, Owner owner) { owners_[v.value()] = owner; }
-  const Vec3* positions() const { return positions_.data(); }
+  void move(VertexId v, Vec3 position) { sites_[v.value()].position = position; }
+  void set_owner(VertexId v, Owner owner) { sites_[v.value()].owner = owner; }
+  const Site* sites() const { return sites_.data(); }
 
  private:
-  std::vector<Vec3> positions_;
-  std::vector<Owner> owners_;
+  std::vector<Site> sites_;
   std::vector<Vec2> parameters_;
   std::vector<Origin> origins_;
 };

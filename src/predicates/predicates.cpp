@@ -233,14 +233,9 @@ int insphere_tie(const std::array<Vec3, 5>& points, const std::array<VertexId, 5
   return 0;
 }
 
-int insphere_perturbed(const Vec3* positions, VertexId a, VertexId b, VertexId c, VertexId d, VertexId e) {
-  const Vec3 pa = positions[a.value()];
-  const Vec3 pb = positions[b.value()];
-  const Vec3 pc = positions[c.value()];
-  const Vec3 pd = positions[d.value()];
-  const Vec3 pe = positions[e.value()];
-  const int exact = insphere(pa, pb, pc, pd, pe);
-  return exact != 0 ? exact : insphere_tie({pa, pb, pc, pd, pe}, {a, b, c, d, e});
+int insphere_perturbed(const std::array<Vec3, 5>& points, const std::array<VertexId, 5>& ids) {
+  const int exact = insphere(points[0], points[1], points[2], points[3], points[4]);
+  return exact != 0 ? exact : insphere_tie(points, ids);
 }
 
 int orient2d(Vec2 a, Vec2 b, Vec2 c) {

@@ -20,6 +20,7 @@
 
 #include "base/hilbert.h"
 #include "predicates/predicates.h"
+#include "spatial/conflicts.h"
 #include "spatial/insphere_four.h"
 #include "spatial/kernel.h"
 #include "spatial/tetrahedralization.h"
@@ -226,36 +227,14 @@ class Builder {
 
   /// Which neighbours of a tet join the cavity now.
   unsigned conflicts_around(const TetComplex::Tet& tet, const Vec3& p, VertexId tie_id) const {
-    const Sites sites{sites_.data()};
     const TetComplex::Tet* const all = complex_.tets();
-    unsigned fresh = 0, finite = 0;
+    unsigned fresh = 0;
     for (std::size_t i = 0; i < 4; ++i) {
       const TetComplex::Tet& next = all[tet.neighbours[i].value()];
       fresh |= static_cast<unsigned>(next.stamp - complex_.flood() - kernel::kOutside > 1) << i;
-      finite |= static_cast<unsigned>(!complex_.is_ghost(tet.neighbours[i])) << i;
     }
-    const unsigned asked = fresh & finite;
-    unsigned conflicts = 0, left = fresh;
-    // One alone is cheaper by itself.
-    if ((asked & (asked - 1)) != 0) {
-      const auto some = static_cast<std::size_t>(std::countr_zero(asked));
-      const auto corners = [&](std::size_t i) -> const TetComplex::Vertices& {
-        return all[tet.neighbours[(asked >> i & 1U) != 0 ? i : some].value()].vertices;
-      };
-      const kernel::Verdicts verdicts =
-          insphere_four_(sites.sites, corners(0), corners(1), corners(2), corners(3), p, exact_);
-      conflicts = asked & verdicts.known & verdicts.inside;
-      for (unsigned on = asked & verdicts.known & verdicts.on; on != 0; on &= on - 1) {
-        const auto i = static_cast<std::size_t>(std::countr_zero(on));
-        if (kernel::in_conflict_by_id(sites, corners(i), p, tie_id)) conflicts |= 1U << i;
-      }
-      left &= ~(asked & verdicts.known);
-    }
-    for (; left != 0; left &= left - 1) {
-      const auto i = static_cast<std::size_t>(std::countr_zero(left));
-      if (kernel::in_conflict(complex_, sites, tet.neighbours[i], p, tie_id)) conflicts |= 1U << i;
-    }
-    return conflicts;
+    return kernel::conflicts_among(complex_, Sites{sites_.data()}, insphere_four_, tet.neighbours, fresh, p, tie_id,
+                                   exact_);
   }
 
   /// For what one more tet of the cavity brings.

@@ -145,7 +145,9 @@ class Checker {
 
   int insphere(TetId t, VertexId v) const {
     const TetComplex::Vertices& w = complex_.vertices(t);
-    return insphere_perturbed(mesh_.vertices().positions(), w[0], w[1], w[2], w[3], v);
+    return insphere_perturbed(
+        {mesh_.position(w[0]), mesh_.position(w[1]), mesh_.position(w[2]), mesh_.position(w[3]), mesh_.position(v)},
+        {w[0], w[1], w[2], w[3], v});
   }
 
   void check_delaunay(TetId t) {

@@ -17,20 +17,29 @@
 // the base is exact, and a ghost coplanar with the point stays only together with its finite neighbour, whose own
 // facets then put the point on the right side of the hull's edges.
 #include <algorithm>
+#include <bit>
 
-#include "spatial/kernel.h"
+#include "spatial/conflicts.h"
 #include "spatial/tetrahedralization.h"
 
 namespace curvetet {
 
 class CavitySearch {
  public:
-  CavitySearch(const Tetrahedralization& mesh, VertexId vertex)
-      : mesh_(mesh), complex_(mesh.complex_), sites_(mesh.sites()), vertex_(vertex), p_(mesh.position(vertex)) {
+  CavitySearch(const Tetrahedralization& mesh, VertexId vertex, Cavity& cavity)
+      : mesh_(mesh),
+        complex_(mesh.complex_),
+        sites_(mesh.sites()),
+        vertex_(vertex),
+        p_(mesh.position(vertex)),
+        cavity_(cavity),
+        queue_(mesh.queue_) {
     cavity_.vertex = vertex;
+    cavity_.tets.clear();
+    cavity_.boundary.clear();
   }
 
-  Cavity run(TetId hint) {
+  void run(TetId hint) {
     const TetId first = mesh_.locate(p_, hint);
     complex_.start_flood();
     if (!first.valid()) {
@@ -46,7 +55,6 @@ class CavitySearch {
       cavity_.tets.clear();
       cavity_.boundary.clear();
     }
-    return std::move(cavity_);
   }
 
  private:
@@ -71,8 +79,9 @@ class CavitySearch {
       if (beyond) {
         add_visible_ghosts(t);
       } else if (!complex_.is_ghost(t)) {
-        if (on_kept_segment(t)) return Refusal::on_kept_segment;
-        on_lock = add_tets_that_touch(t) || on_lock;
+        const unsigned facets = facets_that_hold_it(t);
+        if (on_kept_segment(t, facets)) return Refusal::on_kept_segment;
+        on_lock = add_tets_that_touch(t, facets) || on_lock;
       }
     }
     return on_lock ? Refusal::on_locked_facet : Refusal::none;
@@ -90,51 +99,73 @@ class CavitySearch {
     }
   }
 
+  /// Of the tet, in whose closure the point lies: a bit each.
+  unsigned facets_that_hold_it(TetId t) const {
+    unsigned facets = 0;
+    for (int i = 0; i < 4; ++i)
+      facets |= static_cast<unsigned>(kernel::side(complex_, sites_, t, i, p_) == 0) << static_cast<unsigned>(i);
+    return facets;
+  }
+
   /// Adds the neighbours across facets that hold the point; true if one of these facets is locked.
-  bool add_tets_that_touch(TetId t) {
+  bool add_tets_that_touch(TetId t, unsigned facets) {
     bool on_lock = false;
-    for (int i = 0; i < 4; ++i) {
-      if (kernel::side(complex_, sites_, t, i, p_) != 0) continue;
+    for (; facets != 0; facets &= facets - 1) {
+      const int i = std::countr_zero(facets);
       on_lock = on_lock || complex_.is_locked({t, i});
       add_base(complex_.neighbour(t, i));
     }
     return on_lock;
   }
 
-  /// The point, which lies in the closed tet, lies on a kept edge of it.
-  bool on_kept_segment(TetId t) const {
-    if (mesh_.kept_.empty()) return false;
-    std::array<bool, 4> zero{};
-    for (int i = 0; i < 4; ++i) zero[static_cast<std::size_t>(i)] = kernel::side(complex_, sites_, t, i, p_) == 0;
-    for (std::size_t e = 0; e < 6; ++e) {
-      const std::array<int, 2>& opposite = kEdge[5 - e];
-      if (!zero[static_cast<std::size_t>(opposite[0])] || !zero[static_cast<std::size_t>(opposite[1])]) continue;
-      if (mesh_.is_kept(complex_.vertex(t, kEdge[e][0]), complex_.vertex(t, kEdge[e][1]))) return true;
-    }
-    return false;
+  /// The point lies on a kept edge of the tet.
+  bool on_kept_segment(TetId t, unsigned facets) const {
+    if (std::popcount(facets) < 2) return false;
+    return std::any_of(kEdge.begin(), kEdge.end(), [&](const std::array<int, 2>& edge) {
+      const unsigned beside = facets & ~(1U << static_cast<unsigned>(edge[0]) | 1U << static_cast<unsigned>(edge[1]));
+      return std::popcount(beside) == 2 && mesh_.is_kept(complex_.vertex(t, edge[0]), complex_.vertex(t, edge[1]));
+    });
   }
 
+  /// Its boundary is known with it: what is around a tet is settled when the tet is looked at.
   void grow() {
     for (std::size_t k = 0; k < cavity_.tets.size(); ++k) {
       const TetId t = cavity_.tets[k];
+      const std::array<TetId, 4>& neighbours = complex_.neighbours(t);
+      unsigned asked = 0;
       for (int i = 0; i < 4; ++i) {
-        const TetId next = complex_.neighbour(t, i);
-        if (complex_.flood_state(next) != 0 || complex_.is_locked({t, i})) continue;
-        const bool conflict = kernel::in_conflict(complex_, sites_, next, p_, vertex_);
-        complex_.set_flood_state(next, conflict ? kernel::kInside : kernel::kOutside);
-        if (conflict) cavity_.tets.push_back(next);
+        const bool fresh =
+            complex_.flood_state(neighbours[static_cast<std::size_t>(i)]) == 0 && !complex_.is_locked({t, i});
+        asked |= static_cast<unsigned>(fresh) << static_cast<unsigned>(i);
       }
+      if (asked != 0) add_conflicts(neighbours, asked);
+      for (int i = 0; i < 4; ++i)
+        if (is_boundary(t, i)) cavity_.boundary.push_back({t, i});
+    }
+  }
+
+  void add_conflicts(const std::array<TetId, 4>& neighbours, unsigned asked) {
+    const unsigned conflicts =
+        kernel::conflicts_among(complex_, sites_, mesh_.insphere_four_, neighbours, asked, p_, vertex_, 0);
+    for (; asked != 0; asked &= asked - 1) {
+      const auto i = static_cast<unsigned>(std::countr_zero(asked));
+      const bool joins = (conflicts >> i & 1U) != 0;
+      complex_.set_flood_state(neighbours[i], joins ? kernel::kInside : kernel::kOutside);
+      if (!joins) continue;
+      for (const TetId beyond : complex_.neighbours(neighbours[i])) complex_.prefetch(beyond);
+      cavity_.tets.push_back(neighbours[i]);
     }
   }
 
   bool is_boundary(TetId t, int i) const { return complex_.is_locked({t, i}) || !inside(complex_.neighbour(t, i)); }
 
   void shrink() {
-    do {
-      remove_invisible();
-      if (!cavity_.ok()) return;
-      collect();
-    } while (remove_swallower() && cavity_.ok());
+    const bool star_shaped = std::all_of(cavity_.boundary.begin(), cavity_.boundary.end(),
+                                         [&](const TetFacet& f) { return is_seen(f.tet, f.local); });
+    if (!star_shaped) remove_invisible();
+    while (cavity_.ok() && remove_swallower()) {
+      if (cavity_.ok()) remove_invisible();
+    }
   }
 
   /// The tet leaves the cavity, or the insertion is refused.
@@ -143,6 +174,7 @@ class CavitySearch {
     complex_.set_flood_state(t, kernel::kOutside);
   }
 
+  /// Lists again what is left.
   void remove_invisible() {
     queue_ = cavity_.tets;
     for (std::size_t k = 0; k < queue_.size() && cavity_.ok(); ++k) {
@@ -153,18 +185,21 @@ class CavitySearch {
         if (inside(complex_.neighbour(t, i))) queue_.push_back(complex_.neighbour(t, i));
       }
     }
+    if (cavity_.ok()) collect();
   }
 
   bool sees_all_boundary(TetId t) const {
-    const int infinite = kernel::infinite_local(complex_, t);
-    for (int i = 0; i < 4; ++i) {
-      if ((infinite >= 0 && i != infinite) || !is_boundary(t, i)) continue;
-      if (kernel::side(complex_, sites_, t, i, p_) <= 0) return false;
-    }
+    for (int i = 0; i < 4; ++i)
+      if (is_boundary(t, i) && !is_seen(t, i)) return false;
     return true;
   }
 
-  /// Lists again what is in the cavity, and its boundary.
+  /// The facet strictly from inside; those through infinity need no test.
+  bool is_seen(TetId t, int i) const {
+    const int infinite = kernel::infinite_local(complex_, t);
+    return (infinite >= 0 && i != infinite) || kernel::side(complex_, sites_, t, i, p_) > 0;
+  }
+
   void collect() {
     std::vector<TetId>& tets = cavity_.tets;
     std::erase_if(tets, [&](TetId t) { return !inside(t); });
@@ -190,19 +225,24 @@ class CavitySearch {
         const bool swallowed = v != kInfinite && !on_boundary.contains(v);
         if (swallowed) return take_out(v, v);
       }
-      if (mesh_.kept_.empty()) continue;
+      if (std::popcount(ends_of_kept(*t)) < 2) continue;
       for (const auto& [i, j] : kEdge) {
         const VertexId a = complex_.vertex(*t, i);
         const VertexId b = complex_.vertex(*t, j);
-        if (is_kept_edge(a, b) && !on_boundary_facet(a, b)) return take_out(a, b);
+        if (mesh_.is_kept(a, b) && !on_boundary_facet(a, b)) return take_out(a, b);
       }
     }
     return false;
   }
 
-  bool is_kept_edge(VertexId a, VertexId b) const {
-    return a != kInfinite && b != kInfinite && mesh_.kept_degree_[a] > 0 && mesh_.kept_degree_[b] > 0 &&
-           mesh_.is_kept(a, b);
+  /// The tet's vertices in which kept segments end: a bit each.
+  unsigned ends_of_kept(TetId t) const {
+    unsigned ends = 0;
+    for (std::size_t i = 0; i < 4; ++i) {
+      const VertexId v = complex_.vertices(t)[i];
+      ends |= static_cast<unsigned>(v != kInfinite && mesh_.kept_degree_[v] > 0) << i;
+    }
+    return ends;
   }
 
   bool on_boundary_facet(VertexId a, VertexId b) const {
@@ -231,12 +271,18 @@ class CavitySearch {
   const kernel::Sites sites_;
   const VertexId vertex_;
   const Vec3 p_;  ///< where the vertex is
-  Cavity cavity_;
-  std::vector<TetId> queue_;
+  Cavity& cavity_;
+  std::vector<TetId>& queue_;
 };
 
+void Tetrahedralization::find_cavity(VertexId vertex, TetId hint, Cavity& cavity) const {
+  CavitySearch(*this, vertex, cavity).run(hint);
+}
+
 Cavity Tetrahedralization::find_cavity(VertexId vertex, TetId hint) const {
-  return CavitySearch(*this, vertex).run(hint);
+  Cavity cavity;
+  find_cavity(vertex, hint, cavity);
+  return cavity;
 }
 
 }  // namespace curvetet

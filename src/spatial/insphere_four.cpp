@@ -25,14 +25,14 @@ struct Points {
   Four x, y, z;
 };
 
-[[gnu::always_inline]] inline Four row(const Site* sites, VertexId v) {
+[[gnu::always_inline]] inline Four row(const void* sites, VertexId v) {
   Four out;
-  std::memcpy(&out, sites + v.value(), sizeof(Four));
+  std::memcpy(&out, static_cast<const Site*>(sites) + v.value(), sizeof(Four));
   return out;
 }
 
 /// Vertices of four tets, seen from p.
-[[gnu::always_inline]] inline Points seen_from(const Site* sites, VertexId a, VertexId b, VertexId c, VertexId d,
+[[gnu::always_inline]] inline Points seen_from(const void* sites, VertexId a, VertexId b, VertexId c, VertexId d,
                                                const Vec3& p) {
   const Four row0 = row(sites, a), row1 = row(sites, b), row2 = row(sites, c), row3 = row(sites, d);
   const Four even01 = __builtin_shufflevector(row0, row1, 0, 4, 2, 6);  // x0 x1 z0 z1
@@ -53,7 +53,7 @@ struct Lanes {
   Bits known, inside, on;
 };
 
-[[gnu::always_inline]] inline Lanes evaluate(const Site* sites, const Corners& first, const Corners& second,
+[[gnu::always_inline]] inline Lanes evaluate(const void* sites, const Corners& first, const Corners& second,
                                              const Corners& third, const Corners& fourth, const Vec3& from,
                                              double exact) {
   const Points p = seen_from(sites, first[0], second[0], third[0], fourth[0], from),
@@ -70,7 +70,7 @@ struct Lanes {
 }
 
 #ifdef __x86_64__
-[[gnu::target("avx2")]] Verdicts evaluate_avx2(const Site* sites, const Corners& first, const Corners& second,
+[[gnu::target("avx2")]] Verdicts evaluate_avx2(const void* sites, const Corners& first, const Corners& second,
                                                const Corners& third, const Corners& fourth, const Vec3& p,
                                                double exact) {
   const Lanes lanes = evaluate(sites, first, second, third, fourth, p, exact);
@@ -83,7 +83,7 @@ struct Lanes {
 }
 #endif
 
-Verdicts evaluate_plain(const Site* sites, const Corners& first, const Corners& second, const Corners& third,
+Verdicts evaluate_plain(const void* sites, const Corners& first, const Corners& second, const Corners& third,
                         const Corners& fourth, const Vec3& p, double exact) {
   const Lanes lanes = evaluate(sites, first, second, third, fourth, p, exact);
   Verdicts verdicts;

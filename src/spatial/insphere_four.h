@@ -9,7 +9,7 @@
 
 namespace curvetet::kernel {
 
-/// A point while building, in half a cache line.
+/// A point while building, in half a cache line, like VertexStore::Site.
 struct alignas(32) Site {
   Vec3 position;
   VertexId id;               ///< the caller's, by which ties are broken
@@ -31,9 +31,10 @@ double exact_below(double power);
 
 using Corners = std::array<VertexId, 4>;  ///< of a tet
 
-/// Of the spheres of four finite tets; `exact` is what exact_below says. The bound is the first of filters::Insphere,
-/// so that the verdicts do not depend on the machine's vectors.
-using InsphereFour = Verdicts (*)(const Site* sites, const Corners& first, const Corners& second, const Corners& third,
+/// Of the spheres of four finite tets; `sites` are records of the size of a Site that begin with a position, `exact` is
+/// what exact_below says. The bound is the first of filters::Insphere, so that the verdicts do not depend on the
+/// machine's vectors.
+using InsphereFour = Verdicts (*)(const void* sites, const Corners& first, const Corners& second, const Corners& third,
                                   const Corners& fourth, const Vec3& p, double exact);
 
 /// The one for the processor at hand, and the one for all.

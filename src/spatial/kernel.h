@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "mesh/tet_complex.h"
+#include "mesh/vertex_store.h"
 #include "predicates/filters.h"
 #include "predicates/predicates.h"
 
@@ -15,8 +16,8 @@ namespace curvetet::kernel {
 /// Coordinates by the complex's vertex ids, and the ids by which ties are broken. Building has sites of its own, so
 /// that what follows is for any.
 struct Sites {
-  const Vec3* positions = nullptr;
-  const Vec3& position(VertexId v) const { return positions[v.value()]; }
+  const VertexStore::Site* sites = nullptr;
+  const Vec3& position(VertexId v) const { return sites[v.value()].position; }
   VertexId tie_id(VertexId v) const { return v; }
 };
 

@@ -19,6 +19,7 @@
 #include "base/error.h"
 #include "mesh/tet_complex.h"
 #include "mesh/vertex_store.h"
+#include "spatial/insphere_four.h"
 #include "spatial/kernel.h"
 
 namespace curvetet {
@@ -67,6 +68,8 @@ class Tetrahedralization {
   /// The cavity of the vertex, which is in the store but not yet in this tetrahedralization; changes nothing. Not grown
   /// across locked facets, shrunk until star-shaped (exactly) with every kept segment on its boundary or outside.
   Cavity find_cavity(VertexId vertex, TetId hint = TetId()) const;
+  /// The same into the arrays of another cavity, for loops.
+  void find_cavity(VertexId vertex, TetId hint, Cavity& cavity) const;
   /// Replaces the cavity by the star of the vertex; returns one new tet.
   TetId commit(const Cavity& cavity);
   /// find and commit.
@@ -107,7 +110,7 @@ class Tetrahedralization {
 
  private:
   friend class CavitySearch;
-  kernel::Sites sites() const { return {vertices_->positions()}; }
+  kernel::Sites sites() const { return {vertices_->sites()}; }
   /// The star in the order of a flood; stops at the first tet that `until` holds for, which becomes the first of `out`.
   template <class Until>
   void flood_star(VertexId v, std::vector<TetId>& out, const Until& until) const;
@@ -124,6 +127,8 @@ class Tetrahedralization {
   mutable std::vector<TetId> around_;            // scratch of find_edge and find_facet
   mutable TetId last_;                           // where the last location ended
   mutable kernel::VertexSet boundary_vertices_;  // scratch of find_cavity
+  mutable std::vector<TetId> queue_;             // the same
+  kernel::InsphereFour insphere_four_ = kernel::insphere_four();
 };
 
 }  // namespace curvetet

@@ -17,17 +17,19 @@ using TetSet = std::set<std::array<std::uint32_t, 4>>;
 
 inline TetSet naive_delaunay(const VertexStore& store) {
   TetSet tets;
-  const Vec3* p = store.positions();
+  const auto p = [&](std::uint32_t v) { return store.position(VertexId(v)); };
   const auto n = static_cast<std::uint32_t>(store.size());
   for (std::uint32_t a = 0; a < n; ++a) {
     for (std::uint32_t b = a + 1; b < n; ++b) {
       for (std::uint32_t c = b + 1; c < n; ++c) {
         for (std::uint32_t d = c + 1; d < n; ++d) {
-          const int side = orient3d(p[a], p[b], p[c], p[d]);
+          const int side = orient3d(p(a), p(b), p(c), p(d));
           bool empty = side != 0;
           for (std::uint32_t e = 0; e < n && empty; ++e) {
             if (e == a || e == b || e == c || e == d) continue;
-            empty = side * insphere_perturbed(p, VertexId(a), VertexId(b), VertexId(c), VertexId(d), VertexId(e)) < 0;
+            empty = side * insphere_perturbed({p(a), p(b), p(c), p(d), p(e)},
+                                              {VertexId(a), VertexId(b), VertexId(c), VertexId(d), VertexId(e)}) <
+                    0;
           }
           if (empty) tets.insert({a, b, c, d});
         }

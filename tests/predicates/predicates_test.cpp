@@ -169,14 +169,9 @@ TEST(InspherePerturbed, IsTheSignOfRaisedHeights) {
     for (Vec3& x : p) x = points.point(kind);
     std::array<std::uint32_t, 5> order{0, 1, 2, 3, 4};
     std::shuffle(order.begin(), order.end(), random);
-    std::array<Vec3, 5> positions;
     std::array<VertexId, 5> ids;
-    for (std::size_t i = 0; i < 5; ++i) {
-      ids[i] = VertexId(order[i]);
-      positions[order[i]] = p[i];
-    }
-    ASSERT_EQ(insphere_perturbed(positions.data(), ids[0], ids[1], ids[2], ids[3], ids[4]),
-              insphere_of_raised_heights(p, ids));
+    for (std::size_t i = 0; i < 5; ++i) ids[i] = VertexId(order[i]);
+    ASSERT_EQ(insphere_perturbed(p, ids), insphere_of_raised_heights(p, ids));
   }
 }
 
@@ -186,9 +181,10 @@ TEST(InspherePerturbed, IsNeverZeroForAProperTet) {
     std::array<Vec3, 5> p;
     for (Vec3& x : p) x = points.point(round % 2 == 0 ? 2 : 5);
     if (orient3d(p[0], p[1], p[2], p[3]) == 0 || p[4] == p[0] || p[4] == p[1] || p[4] == p[2] || p[4] == p[3]) continue;
-    ASSERT_NE(insphere_perturbed(p.data(), VertexId(0), VertexId(1), VertexId(2), VertexId(3), VertexId(4)), 0);
-    ASSERT_EQ(insphere_perturbed(p.data(), VertexId(0), VertexId(1), VertexId(2), VertexId(3), VertexId(4)),
-              -insphere_perturbed(p.data(), VertexId(1), VertexId(0), VertexId(2), VertexId(3), VertexId(4)));
+    const std::array ids{VertexId(0U), VertexId(1U), VertexId(2U), VertexId(3U), VertexId(4U)};
+    ASSERT_NE(insphere_perturbed(p, ids), 0);
+    ASSERT_EQ(insphere_perturbed(p, ids),
+              -insphere_perturbed({p[1], p[0], p[2], p[3], p[4]}, {ids[1], ids[0], ids[2], ids[3], ids[4]}));
   }
 }
 

@@ -163,7 +163,7 @@ TEST_P(OnPointSet, TheScanThatBacksTheWalkFindsATetToo) {
   kernel::Stream stream(1);
   for (int k = 0; k < 50; ++k) {
     const Vec3 p = everywhere.next();
-    const TetId scanned = kernel::walk(mesh.complex(), kernel::Sites{store.positions()}, p, TetId(), stream);
+    const TetId scanned = kernel::walk(mesh.complex(), kernel::Sites{store.sites()}, p, TetId(), stream);
     ASSERT_TRUE(scanned.valid());
     // A ghost, where several see the point, need not be the same one.
     if (mesh.complex().is_ghost(scanned)) {
