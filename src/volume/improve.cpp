@@ -11,6 +11,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <numbers>
 #include <vector>
 
@@ -53,6 +54,7 @@ class Improvement {
         goal_(std::sin(options.goal * kDegree)) {}
 
   Result<ImproveResult> run() {
+    collect_below();
     result_.worst_before = worst_degrees();
     for (int round = 0; round < options_.rounds; ++round) {
       reconnect_and_smooth();
@@ -78,7 +80,8 @@ class Improvement {
 
   double worst_degrees() const {
     double worst = 1;
-    for (std::size_t k = 0; k < complex_.slots(); ++k) {
+    for (TetId t : below_) worst = std::min(worst, quality(t));
+    for (std::size_t k = 0; below_.empty() && k < complex_.slots(); ++k) {
       if (is_inside(TetId(k))) worst = std::min(worst, quality(TetId(k)));
     }
     return std::asin(std::clamp(worst, 0.0, 1.0)) / kDegree;
@@ -91,7 +94,7 @@ class Improvement {
 
   /// Works on all bad tets, then on those near what was changed: elsewhere the same attempts would fail again.
   void reconnect_and_smooth() {
-    collect_bad(goal_);
+    bad_ = below_;
     for (int sweep = 0; sweep < kSweeps && !stopped_ && !bad_.empty(); ++sweep) {
       touched_.clear();
       reconnect();
@@ -100,14 +103,35 @@ class Improvement {
       bad_.insert(bad_.end(), still_bad.begin(), still_bad.end());
       smooth();
       collect_bad_near_touched();
+      below_.insert(below_.end(), bad_.begin(), bad_.end());
     }
+    tidy_below();
+  }
+
+  /// Of all tets, those below the goal. From here on only what is near a change has to be looked at.
+  void collect_below() {
+    for (std::size_t k = 0; k < complex_.slots(); ++k) {
+      if (is_inside(TetId(k)) && quality(TetId(k)) < goal_) below_.push_back(TetId(k));
+    }
+  }
+
+  void tidy_below() {
+    std::erase_if(below_, [this](TetId t) { return !is_inside(t) || quality(t) >= goal_; });
+    std::sort(below_.begin(), below_.end());
+    below_.erase(std::unique(below_.begin(), below_.end()), below_.end());
+  }
+
+  /// Changes near touched_ may have made more of them.
+  void refresh_below() {
+    collect_bad_near_touched();
+    below_.insert(below_.end(), bad_.begin(), bad_.end());
+    touched_.clear();
+    tidy_below();
   }
 
   void collect_bad(double goal) {
     bad_.clear();
-    for (std::size_t k = 0; k < complex_.slots(); ++k) {
-      if (is_inside(TetId(k)) && quality(TetId(k)) < goal) bad_.push_back(TetId(k));
-    }
+    std::copy_if(below_.begin(), below_.end(), std::back_inserter(bad_), [&](TetId t) { return quality(t) < goal; });
   }
 
   void collect_bad_near_touched() {
@@ -228,10 +252,11 @@ class Improvement {
     for (int sweep = 0; sweep < kNeedleSweeps && !stopped_; ++sweep) {
       collect_bad(std::sin(kNeedleGoal * kDegree));
       collect_movable();
-      bool moved = false;
+      touched_.clear();
       for (std::size_t k = 0; k < movable_.size() && !should_stop(k); ++k)
-        moved = smooth_beside_needles(movable_[k]) || moved;
-      if (!moved) return;
+        if (smooth_beside_needles(movable_[k])) touched_.push_back(movable_[k]);
+      if (touched_.empty()) return;
+      refresh_below();
     }
   }
 
@@ -269,9 +294,15 @@ class Improvement {
     if (!options_.facet_allowed) return 0;
     std::size_t changed = 0;
     collect_bad(std::sin(options_.insertion_goal * kDegree));
+    touched_.clear();
     for (TetId t : bad_) {
-      if (is_inside(t)) changed += exchange_lock(mesh_, t, options_.facet_allowed);
+      if (!is_inside(t)) continue;
+      const auto v = complex_.vertices(t);
+      if (!exchange_lock(mesh_, t, options_.facet_allowed)) continue;
+      touched_.insert(touched_.end(), v.begin(), v.end());
+      ++changed;
     }
+    refresh_below();
     result_.relocks += changed;
     return changed;
   }
@@ -284,12 +315,19 @@ class Improvement {
     for (TetId t : bad_) order.emplace_back(quality(t), t);
     std::sort(order.begin(), order.end());
     std::size_t changed = 0, failed = 0;
+    touched_.clear();
     for (std::size_t k = 0; k < order.size() && failed < kFailedInsertions + 2 * changed && !should_stop(256 * k);
          ++k) {
       const TetId t = order[k].second;
       if (!is_inside(t) || quality(t) >= goal) continue;
-      ++(insertion_.mend(t, quality(t) + kInsertionGain) ? changed : failed);
+      if (!insertion_.mend(t, quality(t) + kInsertionGain)) {
+        ++failed;
+        continue;
+      }
+      touched_.push_back(complex_.vertex(mesh_.last_star().front(), 3));
+      ++changed;
     }
+    refresh_below();
     result_.inserted += changed;
     return changed;
   }
@@ -302,6 +340,7 @@ class Improvement {
   VertexInsertion insertion_;
   double goal_;
   bool stopped_ = false;
+  std::vector<TetId> below_;  ///< all tets below the goal, ascending, between the steps
   std::vector<TetId> bad_, star_;
   std::vector<VertexId> touched_, movable_;
   IndexedVector<VertexId, char> is_touched_;

@@ -118,7 +118,8 @@ class Refinement {
         vertices_(vertices),
         field_(field),
         options_(options),
-        context_(context) {}
+        context_(context),
+        has_local_sizes_(field.options().callback || !field.options().solid_size.empty()) {}
 
   Result<RefineResult> run() {
     for (std::size_t k = 0; k < complex_.slots(); ++k) {
@@ -159,6 +160,22 @@ class Refinement {
     return {vertices_.position(v[0]), vertices_.position(v[1]), vertices_.position(v[2]), vertices_.position(v[3])};
   }
 
+  /// Nearly all tets are good, and this tells so without a root or a look at the field: by the grading, the sizes at
+  /// the vertices bound the size at the centroid, which lies within the circumradius of one of them.
+  bool is_surely_good(TetId t) {
+    if (has_local_sizes_) return false;
+    const auto p = points(t);
+    const Vec3 u = p[0] - p[3], v = p[1] - p[3], w = p[2] - p[3], vw = cross(v, w);
+    const double u2 = norm2(u), v2 = norm2(v), w2 = norm2(w), twelve_volumes = 2 * dot(u, vw);
+    const double reach2 = norm2(u2 * vw + v2 * cross(w, u) + w2 * cross(u, v));  // circumradius * twelve volumes
+    const double volumes2 = twelve_volumes * twelve_volumes;
+    const double shortest2 = std::min({u2, v2, w2, norm2(p[1] - p[0]), norm2(p[2] - p[1]), norm2(p[0] - p[2])});
+    double least = std::numeric_limits<double>::infinity();
+    for (VertexId x : complex_.vertices(t)) least = std::min(least, size_at_vertex(x));
+    const double largest = kRadiusOverSize * least / (1 + kRadiusOverSize * field_.options().grading);
+    return reach2 <= std::min(options_.radius_edge * options_.radius_edge * shortest2, largest * largest) * volumes2;
+  }
+
   Judgement judge(TetId t) {
     const auto p = points(t);
     Judgement j;
@@ -170,27 +187,16 @@ class Refinement {
     }
     shortest = std::sqrt(shortest);
     const double shape = j.radius / (options_.radius_edge * shortest);
-    const double too_large = size_ratio(t, p, j.radius);
+    // Over the largest that the size field allows.
+    const double too_large =
+        j.radius / (kRadiusOverSize * size_at(0.25 * (p[0] + p[1] + p[2] + p[3]), complex_.region(t)));
     j.badness = std::max(shape, too_large);
     j.least_distance = too_large > 1 ? std::numeric_limits<double>::infinity() : shortest;
     return j;
   }
 
-  /// Circumradius over the largest that the size field allows. By the grading, the sizes at the vertices bound the size
-  /// at the centroid, which lies within the circumradius of one of them: most tets need no look at the field.
-  double size_ratio(TetId t, const std::array<Vec3, 4>& p, double radius) {
-    const std::uint32_t region = complex_.region(t);
-    if (!field_.options().callback && field_.options().solid_size.empty()) {
-      double least = std::numeric_limits<double>::infinity();
-      for (VertexId v : complex_.vertices(t)) least = std::min(least, size_at_vertex(v));
-      const double bound = kRadiusOverSize * (least - field_.options().grading * radius);
-      if (radius <= bound) return radius / bound;
-    }
-    return radius / (kRadiusOverSize * size_at(0.25 * (p[0] + p[1] + p[2] + p[3]), region));
-  }
-
   void queue(TetId t) {
-    if (!complex_.is_alive(t) || complex_.region(t) == 0 || complex_.is_ghost(t)) return;
+    if (!complex_.is_alive(t) || complex_.region(t) == 0 || complex_.is_ghost(t) || is_surely_good(t)) return;
     const double badness = judge(t).badness;
     if (badness > 1) bad_.push(badness, {t, stamp_of(complex_.vertices(t))});
   }
@@ -273,9 +279,9 @@ class Refinement {
     const double apart = std::min(kVertexDistance * size, j.least_distance);
     if (is_close_to_corner(p, at, apart)) return false;
     place_spare(p, region);
-    const Cavity cavity = mesh_.find_cavity(spare_, at);
-    if (!cavity.ok() || !is_legal(cavity, p, size, apart)) return false;
-    mesh_.commit(cavity);
+    mesh_.find_cavity(spare_, at, cavity_);
+    if (!cavity_.ok() || !is_legal(cavity_, p, size, apart)) return false;
+    mesh_.commit(cavity_);
     spare_ = VertexId();
     ++result_.inserted;
     for (TetId t : mesh_.last_star()) queue(t);
@@ -321,10 +327,12 @@ class Refinement {
   const SizeField& field_;
   const RefineOptions& options_;
   Context& context_;
+  bool has_local_sizes_;  ///< that do not follow the grading
   IndexedVector<VertexId, double> vertex_size_;
   BadTets bad_;
   std::vector<Entry> unmet_;
   VertexId spare_;
+  Cavity cavity_;
   RefineResult result_;
 };
 
