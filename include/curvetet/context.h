@@ -57,4 +57,9 @@ class Context {
 /// be written to slots by i, so that the outcome does not depend on the number of threads. Exceptions are rethrown.
 void parallel_for(const Context& context, std::size_t n, const std::function<void(std::size_t)>& body);
 
+/// The same with the number of the worker that calls, below worker_count(), for scratch arrays that need no content.
+void parallel_for(const Context& context, std::size_t n,
+                  const std::function<void(std::size_t i, std::size_t worker)>& body);
+std::size_t worker_count(const Context& context);
+
 }  // namespace curvetet

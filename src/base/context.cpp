@@ -32,8 +32,13 @@ void Context::advance(double share) {
 }
 
 void parallel_for(const Context& context, std::size_t n, const std::function<void(std::size_t)>& body) {
+  parallel_for(context, n, [&](std::size_t i, std::size_t) { body(i); });
+}
+
+void parallel_for(const Context& context, std::size_t n,
+                  const std::function<void(std::size_t i, std::size_t worker)>& body) {
   if (context.threads == 1 || n < 2) {
-    for (std::size_t i = 0; i < n; ++i) body(i);
+    for (std::size_t i = 0; i < n; ++i) body(i, 0);
     return;
   }
   tbb::task_arena arena(context.threads > 0 ? context.threads : tbb::task_arena::automatic);
@@ -41,10 +46,15 @@ void parallel_for(const Context& context, std::size_t n, const std::function<voi
     tbb::parallel_for(
         tbb::blocked_range<std::size_t>(0, n, 1),
         [&](const tbb::blocked_range<std::size_t>& range) {
-          for (std::size_t i = range.begin(); i != range.end(); ++i) body(i);
+          const auto worker = static_cast<std::size_t>(tbb::this_task_arena::current_thread_index());
+          for (std::size_t i = range.begin(); i != range.end(); ++i) body(i, worker);
         },
         tbb::simple_partitioner());
   });
+}
+
+std::size_t worker_count(const Context& context) {
+  return static_cast<std::size_t>(context.threads > 0 ? context.threads : tbb::this_task_arena::max_concurrency());
 }
 
 }  // namespace curvetet

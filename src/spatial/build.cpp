@@ -125,13 +125,6 @@ class Builder {
   }
 
  private:
-  /// A facet of the cavity's boundary, seen from outside, with its vertices as the tet inside lists them.
-  struct Wall {
-    TetId outer;
-    int local = 0;
-    std::array<VertexId, 3> vertices;
-  };
-
   /// Brings four points that are not coplanar to the front and makes the first tet.
   Status start() {
     const std::size_t n = sites_.size();
@@ -167,11 +160,7 @@ class Builder {
       if (w != kInfinite && sites.position(w) == p) return w;
     }
     grow(first, p, sites.tie_id(v));
-    if (kernel::EdgeTable::fits(wall_count_)) {
-      fill(v);
-    } else {
-      fill_large(v);
-    }
+    fill(v);
     last_ = tets_[wall_count_ - 1];
     return VertexId();
   }
@@ -217,7 +206,7 @@ class Builder {
         }
         next.stamp = outside;
         const std::array<TetId, 4>& back = next.neighbours;
-        Wall& wall = walls_[wall_count_++];
+        kernel::Wall& wall = walls_[wall_count_++];
         wall.outer = id;
         wall.local = (back[1] == t) + 2 * (back[2] == t) + 3 * (back[3] == t);
         for (std::size_t j = 0; j < 3; ++j) wall.vertices[j] = tet.vertices[static_cast<std::size_t>(kFacet[i][j])];
@@ -249,37 +238,10 @@ class Builder {
       if (tet_count_ == tets_.size()) tets_.resize(2 * tets_.size());
       tets_[tet_count_] = complex_.add({});
     }
-    table_.clear();
-    TetComplex::Tet* const all = complex_.tets();
-    for (std::size_t k = 0; k < wall_count_; ++k) {
-      const Wall& wall = walls_[k];
-      TetComplex::Tet& tet = all[tets_[k].value()];
-      for (std::size_t j = 0; j < 3; ++j) {
-        const VertexId w = wall.vertices[j];
-        tet.vertices[j] = w;
-        numbers_[k][j] = table_.number_of(w, w == kInfinite ? infinite_ : sites_[w.value()].number);
-      }
-      tet.vertices[3] = v;
-      tet.neighbours[3] = wall.outer;
-      tet.stamp = 0;
-      all[wall.outer.value()].neighbours[static_cast<std::size_t>(wall.local)] = tets_[k];
-      table_.enter(numbers_[k], tets_[k]);
-    }
-    for (std::size_t k = 0; k < wall_count_; ++k) {
-      const std::array<TetId, 3> neighbours = table_.neighbours(numbers_[k]);
-      for (std::size_t j = 0; j < 3; ++j) all[tets_[k].value()].neighbours[j] = neighbours[j];
-    }
+    star_builder_.fill(complex_, v, std::span(walls_).first(wall_count_), tets_, [&](VertexId w) -> std::uint32_t& {
+      return w == kInfinite ? infinite_ : sites_[w.value()].number;
+    });
     for (std::size_t k = wall_count_; k < tet_count_; ++k) complex_.remove(tets_[k]);
-  }
-
-  /// The same where the boundary has too many vertices for the table.
-  void fill_large(VertexId v) {
-    boundary_.clear();
-    for (std::size_t k = 0; k < wall_count_; ++k)
-      boundary_.push_back(complex_.mirror({walls_[k].outer, walls_[k].local}));
-    star_builder_.replace(complex_, v, std::span(tets_).first(tet_count_), boundary_, star_);
-    if (tets_.size() < wall_count_) tets_.resize(wall_count_);
-    std::copy(star_.begin(), star_.end(), tets_.begin());
   }
 
   TetComplex& complex_;
@@ -291,15 +253,10 @@ class Builder {
   kernel::StarBuilder star_builder_;
   // The cavity, then the star in its place: tet k of the star is behind wall k. Only the counted entries are in use.
   std::vector<TetId> tets_ = std::vector<TetId>(64);
-  std::vector<Wall> walls_ = std::vector<Wall>(64);
+  std::vector<kernel::Wall> walls_ = std::vector<kernel::Wall>(64);
   std::size_t tet_count_ = 0, wall_count_ = 0;
 
-  kernel::EdgeTable table_;
-  std::array<kernel::EdgeTable::Numbers, 2 * kernel::EdgeTable::kMostVertices> numbers_{};  ///< of each wall's vertices
   std::uint32_t infinite_ = 0;  ///< the number of the infinite vertex
-
-  std::vector<TetFacet> boundary_;
-  std::vector<TetId> star_;
 };
 
 }  // namespace

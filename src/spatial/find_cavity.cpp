@@ -26,22 +26,23 @@ namespace curvetet {
 
 class CavitySearch {
  public:
-  CavitySearch(const Tetrahedralization& mesh, VertexId vertex, Cavity& cavity)
+  CavitySearch(const Tetrahedralization& mesh, CavityScratch& scratch, VertexId vertex, Vec3 p, Cavity& cavity)
       : mesh_(mesh),
         complex_(mesh.complex_),
         sites_(mesh.sites()),
+        marks_(scratch.marks),
         vertex_(vertex),
-        p_(mesh.position(vertex)),
+        p_(p),
         cavity_(cavity),
-        queue_(mesh.queue_) {
+        scratch_(scratch),
+        queue_(scratch.queue) {
     cavity_.vertex = vertex;
     cavity_.tets.clear();
     cavity_.boundary.clear();
   }
 
-  void run(TetId hint) {
-    const TetId first = mesh_.locate(p_, hint);
-    complex_.start_flood();
+  void run(TetId first) {
+    marks_.start();
     if (!first.valid()) {
       cavity_.refusal = Refusal::outside;
     } else {
@@ -58,12 +59,12 @@ class CavitySearch {
   }
 
  private:
-  bool inside(TetId t) const { return complex_.flood_state(t) >= kernel::kInside; }
-  bool base(TetId t) const { return complex_.flood_state(t) == kernel::kBase; }
+  bool inside(TetId t) const { return marks_.state(t.value()) >= kernel::kInside; }
+  bool base(TetId t) const { return marks_.state(t.value()) == kernel::kBase; }
 
   void add_base(TetId t) {
     if (inside(t)) return;
-    complex_.set_flood_state(t, kernel::kBase);
+    marks_.set(t.value(), kernel::kBase);
     cavity_.tets.push_back(t);
   }
 
@@ -135,7 +136,7 @@ class CavitySearch {
       unsigned asked = 0;
       for (int i = 0; i < 4; ++i) {
         const bool fresh =
-            complex_.flood_state(neighbours[static_cast<std::size_t>(i)]) == 0 && !complex_.is_locked({t, i});
+            marks_.state(neighbours[static_cast<std::size_t>(i)].value()) == 0 && !complex_.is_locked({t, i});
         asked |= static_cast<unsigned>(fresh) << static_cast<unsigned>(i);
       }
       if (asked != 0) add_conflicts(neighbours, asked);
@@ -150,7 +151,7 @@ class CavitySearch {
     for (; asked != 0; asked &= asked - 1) {
       const auto i = static_cast<unsigned>(std::countr_zero(asked));
       const bool joins = (conflicts >> i & 1U) != 0;
-      complex_.set_flood_state(neighbours[i], joins ? kernel::kInside : kernel::kOutside);
+      marks_.set(neighbours[i].value(), joins ? kernel::kInside : kernel::kOutside);
       if (!joins) continue;
       for (const TetId beyond : complex_.neighbours(neighbours[i])) complex_.prefetch(beyond);
       cavity_.tets.push_back(neighbours[i]);
@@ -171,7 +172,7 @@ class CavitySearch {
   /// The tet leaves the cavity, or the insertion is refused.
   void exclude(TetId t) {
     if (base(t)) cavity_.refusal = Refusal::locked_cavity;
-    complex_.set_flood_state(t, kernel::kOutside);
+    marks_.set(t.value(), kernel::kOutside);
   }
 
   /// Lists again what is left.
@@ -213,7 +214,7 @@ class CavitySearch {
 
   /// Takes the last found tet around a vertex or kept segment that would vanish out of the cavity; false if none would.
   bool remove_swallower() {
-    kernel::VertexSet& on_boundary = mesh_.boundary_vertices_;
+    kernel::VertexSet& on_boundary = scratch_.boundary_vertices;
     on_boundary.start(mesh_.vertices().size());
     for (const TetFacet& f : cavity_.boundary) {
       for (const VertexId v : complex_.facet_vertices(f)) {
@@ -269,20 +270,24 @@ class CavitySearch {
   const Tetrahedralization& mesh_;
   const TetComplex& complex_;
   const kernel::Sites sites_;
+  kernel::SmallMarks& marks_;
   const VertexId vertex_;
   const Vec3 p_;  ///< where the vertex is
   Cavity& cavity_;
+  CavityScratch& scratch_;
   std::vector<TetId>& queue_;
 };
 
-void Tetrahedralization::find_cavity(VertexId vertex, TetId hint, Cavity& cavity) const {
-  CavitySearch(*this, vertex, cavity).run(hint);
-}
-
 Cavity Tetrahedralization::find_cavity(VertexId vertex, TetId hint) const {
   Cavity cavity;
-  find_cavity(vertex, hint, cavity);
+  const Vec3 p = position(vertex);
+  const TetId first = locate(p, hint);
+  CavitySearch(*this, scratch_, vertex, p, cavity).run(first);
   return cavity;
+}
+
+void Tetrahedralization::find_cavity_at(Vec3 p, TetId holding, CavityScratch& scratch, Cavity& cavity) const {
+  CavitySearch(*this, scratch, VertexId(vertices_->size()), p, cavity).run(holding);
 }
 
 }  // namespace curvetet

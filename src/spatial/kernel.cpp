@@ -1,27 +1,9 @@
 // A star is glued along the edges of the cavity's boundary. Small boundaries, nearly all, number their vertices and
 // enter each new tet in a square table under its directed edges; the neighbour is under the reversed edge. Large ones
-// need no table: around an edge of the boundary one turns through the old tets, which are still linked, until the
-// boundary is met again, where the old tet's link has already been replaced by the new tet.
+// sort their edges. Neither looks at the old tets, so that stars of disjoint cavities can be made at the same time.
 #include "spatial/kernel.h"
 
-#include "base/error.h"
-
 namespace curvetet::kernel {
-
-namespace {
-
-/// Turns around the edge (a,b) from old tet t, leaving it through the facet opposite `away`, to the new tet beyond.
-TetId turn(const TetComplex& complex, TetId t, VertexId a, VertexId b, VertexId away) {
-  for (;;) {
-    const int exit = complex.local(t, away);
-    const VertexId kept = complex.vertex(t, 6 - complex.local(t, a) - complex.local(t, b) - exit);
-    t = complex.neighbour(t, exit);
-    if (complex.flood_state(t) < kInside) return t;
-    away = kept;
-  }
-}
-
-}  // namespace
 
 TetId add_first_tet(TetComplex& complex, VertexId a, VertexId b, VertexId c, VertexId d) {
   const TetId t = complex.add({a, b, c, d});
@@ -42,60 +24,35 @@ TetId add_first_tet(TetComplex& complex, VertexId a, VertexId b, VertexId c, Ver
   return t;
 }
 
-void StarBuilder::replace(TetComplex& complex, VertexId v, std::span<const TetId> tets,
-                          std::span<const TetFacet> boundary, std::vector<TetId>& star) {
-  add_tets(complex, v, boundary, star);
-  if (EdgeTable::fits(boundary.size())) {
-    glue_by_table(complex, star);
-  } else {
-    glue_by_turning(complex, boundary, star);
-  }
-  for (const TetId t : tets) complex.remove(t);
-}
-
-void StarBuilder::add_tets(TetComplex& complex, VertexId v, std::span<const TetFacet> boundary,
-                           std::vector<TetId>& star) {
-  star.clear();
+void collect_walls(const TetComplex& complex, std::span<const TetFacet> boundary, std::vector<Wall>& walls) {
+  walls.clear();
   for (const TetFacet& f : boundary) {
     const TetFacet outer = complex.mirror(f);
-    const std::array<VertexId, 3> w = complex.facet_vertices(f);
-    const TetId t = complex.add({w[0], w[1], w[2], v});
-    complex.glue({t, 3}, outer);
-    if (complex.is_locked(f)) complex.set_lock_bit({t, 3}, true);
-    complex.set_region(t, complex.region(f.tet));
-    complex.set_neighbour(f.tet, f.local, t);
-    star.push_back(t);
+    const std::uint32_t lock = complex.is_locked(f) ? 1U << 3U : 0;
+    walls.push_back({outer.tet, outer.local, complex.facet_vertices(f), complex.region(f.tet) << 8U | lock});
   }
 }
 
-void StarBuilder::glue_by_table(TetComplex& complex, std::span<const TetId> star) {
-  std::array<EdgeTable::Numbers, 2 * EdgeTable::kMostVertices> numbers;
-  table_.clear();
-  for (std::size_t k = 0; k < star.size(); ++k) {
-    for (std::size_t i = 0; i < 3; ++i) {
-      const VertexId v = complex.vertex(star[k], static_cast<int>(i));
-      numbers[k][i] = table_.number_of(v, numbers_[v.value() + 2U]);
-    }
-    table_.enter(numbers[k], star[k]);
-  }
-  for (std::size_t k = 0; k < star.size(); ++k) {
-    const std::array<TetId, 3> neighbours = table_.neighbours(numbers[k]);
-    for (int i = 0; i < 3; ++i) complex.set_neighbour(star[k], i, neighbours[static_cast<std::size_t>(i)]);
-  }
+void StarBuilder::replace(TetComplex& complex, VertexId v, std::span<const TetId> tets,
+                          std::span<const TetFacet> boundary, std::vector<TetId>& star) {
+  collect_walls(complex, boundary, walls_);
+  star.assign(tets.begin(), tets.end());
+  while (star.size() < walls_.size()) star.push_back(complex.add({}));
+  fill(complex, v, walls_, star);
+  for (std::size_t k = walls_.size(); k < star.size(); ++k) complex.remove(star[k]);
+  star.resize(walls_.size());
 }
 
-void StarBuilder::glue_by_turning(TetComplex& complex, std::span<const TetFacet> boundary,
-                                  std::span<const TetId> star) const {
-  for (std::size_t k = 0; k < boundary.size(); ++k) {
-    const TetId t = star[k];
-    for (int i = 0; i < 3; ++i) {
-      if (complex.neighbour(t, i).valid()) continue;
-      const VertexId a = complex.vertex(t, (i + 1) % 3);
-      const VertexId b = complex.vertex(t, (i + 2) % 3);
-      const TetId other = turn(complex, boundary[k].tet, a, b, complex.vertex(t, i));
-      complex.glue({t, i}, {other, 3 - complex.local(other, a) - complex.local(other, b)});
+void StarBuilder::glue_by_sorting(TetComplex& complex, std::span<const Wall> walls, std::span<const TetId> slots) {
+  edges_.clear();
+  for (std::size_t k = 0; k < walls.size(); ++k) {
+    for (std::size_t j = 0; j < 3; ++j) {
+      const auto [a, b] = std::minmax(walls[k].vertices[(j + 1) % 3], walls[k].vertices[(j + 2) % 3]);
+      edges_.push_back({{a, b}, {slots[k], static_cast<int>(j)}});
     }
   }
+  std::sort(edges_.begin(), edges_.end(), [](const Edge& a, const Edge& b) { return a.ends < b.ends; });
+  for (std::size_t k = 0; k + 1 < edges_.size(); k += 2) complex.glue(edges_[k].facet, edges_[k + 1].facet);
 }
 
 }  // namespace curvetet::kernel

@@ -181,27 +181,92 @@ class EdgeTable {
   std::array<std::array<TetId, kMostVertices>, kMostVertices> beyond_{};
 };
 
+/// A facet of a cavity's boundary, seen from outside, with its vertices as the tet inside lists them.
+struct Wall {
+  TetId outer;
+  int local = 0;
+  std::array<VertexId, 3> vertices;
+  std::uint32_t flags = 0;  ///< of the new tet behind it: region, and the lock of its facet 3
+};
+
+/// The walls of a cavity with this boundary, each facet of which is seen from the tet that goes.
+void collect_walls(const TetComplex& complex, std::span<const TetFacet> boundary, std::vector<Wall>& walls);
+
 /// Replaces balls of tets by stars. The scratch arrays live as long as the object.
 class StarBuilder {
  public:
-  /// Replaces the tets, which form a ball, by the star of v over the ball's boundary. The flood states must be kInside
-  /// or kBase for `tets` and for no other. Carries locks and regions. New tets have v as local vertex 3, in the order
-  /// of `boundary`.
+  /// Replaces the tets, which form a ball, by the star of v over the ball's boundary. Carries locks and regions. New
+  /// tets have v as local vertex 3, in the order of `boundary`.
   void replace(TetComplex& complex, VertexId v, std::span<const TetId> tets, std::span<const TetFacet> boundary,
                std::vector<TetId>& star);
-  /// Makes room for vertices with ids below n; to be called before.
+  /// Makes the star of v: behind wall k the tet in slot k, whatever is there. Touches nothing but these slots and the
+  /// links of the outer tets to them. number_of(w) is a number that belongs to vertex w (see EdgeTable::number_of).
+  template <class NumberOf>
+  void fill(TetComplex& complex, VertexId v, std::span<const Wall> walls, std::span<const TetId> slots,
+            const NumberOf& number_of);
+  /// The same with numbers of its own.
+  void fill(TetComplex& complex, VertexId v, std::span<const Wall> walls, std::span<const TetId> slots) {
+    fill(complex, v, walls, slots, [&](VertexId w) -> std::uint32_t& { return numbers_[w.value() + 2U]; });
+  }
+  /// Makes room for vertices with ids below n; to be called before, but where the caller has the numbers.
   void cover_vertices(std::size_t n) {
     if (numbers_.size() < n + 2) numbers_.resize(n + 2, 0);
   }
   std::size_t bytes() const { return numbers_.capacity() * sizeof(std::uint32_t); }
 
  private:
-  void add_tets(TetComplex& complex, VertexId v, std::span<const TetFacet> boundary, std::vector<TetId>& star);
-  void glue_by_table(TetComplex& complex, std::span<const TetId> star);
-  void glue_by_turning(TetComplex& complex, std::span<const TetFacet> boundary, std::span<const TetId> star) const;
+  template <class NumberOf>
+  void glue_by_table(TetComplex& complex, std::span<const Wall> walls, std::span<const TetId> slots,
+                     const NumberOf& number_of);
+  void glue_by_sorting(TetComplex& complex, std::span<const Wall> walls, std::span<const TetId> slots);
+
+  /// An edge of a wall: its vertices, the smaller first, and the facet of the new tet there.
+  struct Edge {
+    std::array<VertexId, 2> ends;
+    TetFacet facet;
+  };
 
   std::vector<std::uint32_t> numbers_;  ///< of v at v + 2 (the infinite vertex wraps to 0), for the table
+  std::vector<Wall> walls_;
+  std::vector<Edge> edges_;
   EdgeTable table_;
+  std::array<EdgeTable::Numbers, 2 * EdgeTable::kMostVertices> wall_numbers_{};  ///< of each wall's vertices
 };
+
+template <class NumberOf>
+void StarBuilder::fill(TetComplex& complex, VertexId v, std::span<const Wall> walls, std::span<const TetId> slots,
+                       const NumberOf& number_of) {
+  TetComplex::Tet* const all = complex.tets();
+  for (std::size_t k = 0; k < walls.size(); ++k) {
+    const Wall& wall = walls[k];
+    TetComplex::Tet& tet = all[slots[k].value()];
+    tet.vertices = {wall.vertices[0], wall.vertices[1], wall.vertices[2], v};
+    tet.neighbours[3] = wall.outer;
+    tet.flags = wall.flags;
+    tet.stamp = 0;
+    all[wall.outer.value()].neighbours[static_cast<std::size_t>(wall.local)] = slots[k];
+  }
+  if (EdgeTable::fits(walls.size())) {
+    glue_by_table(complex, walls, slots, number_of);
+  } else {
+    glue_by_sorting(complex, walls, slots);
+  }
+}
+
+template <class NumberOf>
+void StarBuilder::glue_by_table(TetComplex& complex, std::span<const Wall> walls, std::span<const TetId> slots,
+                                const NumberOf& number_of) {
+  table_.clear();
+  for (std::size_t k = 0; k < walls.size(); ++k) {
+    for (std::size_t j = 0; j < 3; ++j)
+      wall_numbers_[k][j] = table_.number_of(walls[k].vertices[j], number_of(walls[k].vertices[j]));
+    table_.enter(wall_numbers_[k], slots[k]);
+  }
+  TetComplex::Tet* const all = complex.tets();
+  for (std::size_t k = 0; k < walls.size(); ++k) {
+    const std::array<TetId, 3> neighbours = table_.neighbours(wall_numbers_[k]);
+    for (std::size_t j = 0; j < 3; ++j) all[slots[k].value()].neighbours[j] = neighbours[j];
+  }
+}
 
 }  // namespace curvetet::kernel

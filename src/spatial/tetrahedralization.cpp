@@ -61,15 +61,33 @@ TetId Tetrahedralization::locate(Vec3 p, TetId hint) const {
 TetId Tetrahedralization::commit(const Cavity& cavity) {
   CURVETET_CHECK(cavity.ok() && !cavity.tets.empty());
   cover_vertices();
-  complex_.start_flood();
-  for (const TetId t : cavity.tets) {
-    CURVETET_CHECK(complex_.is_alive(t));
-    complex_.set_flood_state(t, kernel::kInside);
-  }
+  for (const TetId t : cavity.tets) CURVETET_CHECK(complex_.is_alive(t));
   star_builder_.replace(complex_, cavity.vertex, cavity.tets, cavity.boundary, star_);
   for (const TetId t : star_) touch(t);
   last_ = star_.back();
   return last_;
+}
+
+void Tetrahedralization::note_walls(Insertion& insertion) const {
+  kernel::collect_walls(complex_, insertion.cavity.boundary, insertion.walls);
+}
+
+void Tetrahedralization::reserve(Insertion& insertion, VertexId vertex) {
+  insertion.cavity.vertex = vertex;
+  insertion.slots = insertion.cavity.tets;
+  while (insertion.slots.size() < insertion.walls.size()) insertion.slots.push_back(complex_.add({}));
+}
+
+void Tetrahedralization::commit(Insertion& insertion, kernel::StarBuilder& builder) {
+  builder.fill(complex_, insertion.cavity.vertex, insertion.walls, insertion.slots);
+}
+
+void Tetrahedralization::settle(Insertion& insertion) {
+  cover_vertices();
+  for (std::size_t k = insertion.walls.size(); k < insertion.slots.size(); ++k) complex_.remove(insertion.slots[k]);
+  insertion.slots.resize(insertion.walls.size());
+  for (const TetId t : insertion.slots) touch(t);
+  last_ = insertion.slots.back();
 }
 
 Refusal Tetrahedralization::insert(VertexId vertex, TetId hint) {
@@ -178,7 +196,7 @@ std::size_t Tetrahedralization::bytes() const {
   const std::size_t kept_node = sizeof(std::uint64_t) + sizeof(void*);
   return complex_.bytes() + vertex_tet_.raw().capacity() * sizeof(TetId) +
          kept_degree_.raw().capacity() * sizeof(std::uint32_t) + kept_.size() * kept_node +
-         kept_.bucket_count() * sizeof(void*) + star_.capacity() * sizeof(TetId) + boundary_vertices_.bytes() +
+         kept_.bucket_count() * sizeof(void*) + star_.capacity() * sizeof(TetId) + scratch_.boundary_vertices.bytes() +
          star_builder_.bytes();
 }
 

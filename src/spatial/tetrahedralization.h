@@ -4,7 +4,8 @@
 // Before: every vertex lies on the grid (geometry/frame.h); no two at one place.
 // After each commit: neighbour links are reciprocal, every finite tet is positive (exactly), ghosts cover the hull, and
 // without locks and kept segments the tetrahedralization is Delaunay of the symbolically perturbed points.
-// Queries and find_cavity use scratch arrays of the object: not to be called on one object from several threads.
+// Queries and find_cavity use scratch arrays of the object: not to be called on one object from several threads. Only
+// find_cavity_at is.
 #pragma once
 
 #include <array>
@@ -21,6 +22,7 @@
 #include "mesh/vertex_store.h"
 #include "spatial/insphere_four.h"
 #include "spatial/kernel.h"
+#include "spatial/small_marks.h"
 
 namespace curvetet {
 
@@ -52,6 +54,20 @@ struct Cavity {
   bool ok() const { return refusal == Refusal::none; }
 };
 
+/// What one search needs for itself.
+struct CavityScratch {
+  kernel::SmallMarks marks;
+  kernel::VertexSet boundary_vertices;
+  std::vector<TetId> queue;
+};
+
+/// One of many insertions at a time: found, then reserved, then committed, then settled.
+struct Insertion {
+  Cavity cavity;
+  std::vector<kernel::Wall> walls;  ///< in the order of the cavity's boundary
+  std::vector<TetId> slots;         ///< the star's tets, behind the walls in order; once settled no more than these
+};
+
 class Tetrahedralization {
  public:
   /// The store must outlive this object; vertices are inserted by id.
@@ -68,14 +84,26 @@ class Tetrahedralization {
   /// The cavity of the vertex, which is in the store but not yet in this tetrahedralization; changes nothing. Not grown
   /// across locked facets, shrunk until star-shaped (exactly) with every kept segment on its boundary or outside.
   Cavity find_cavity(VertexId vertex, TetId hint = TetId()) const;
-  /// The same into the arrays of another cavity, for loops.
-  void find_cavity(VertexId vertex, TetId hint, Cavity& cavity) const;
   /// Replaces the cavity by the star of the vertex; returns one new tet.
   TetId commit(const Cavity& cavity);
   /// find and commit.
   Refusal insert(VertexId vertex, TetId hint = TetId());
   /// The tets made by the last commit.
   const std::vector<TetId>& last_star() const { return star_; }
+
+  // --- many insertions at a time: find_cavity_at and commit on several threads, reserve and settle on one ---
+  /// The cavity of a vertex that is still to be added to the store, at p in the closed finite tet `holding`. Changes
+  /// nothing. Each thread has a scratch of its own.
+  void find_cavity_at(Vec3 p, TetId holding, CavityScratch& scratch, Cavity& cavity) const;
+  /// Notes what commit will need of the tets beside the cavity. Changes nothing.
+  void note_walls(Insertion& insertion) const;
+  /// Takes slots for the star of the vertex, which is in the store now.
+  void reserve(Insertion& insertion, VertexId vertex);
+  /// Replaces the cavity by the star, if nothing in it or beside it has changed since it was found. Each thread has a
+  /// builder of its own, which covers the store's vertices.
+  void commit(Insertion& insertion, kernel::StarBuilder& builder);
+  /// Frees what is not needed and notes a tet of each vertex: then the tetrahedralization is whole again.
+  void settle(Insertion& insertion);
 
   // --- queries ---
   const TetComplex& complex() const { return complex_; }
@@ -124,10 +152,9 @@ class Tetrahedralization {
   IndexedVector<VertexId, std::uint32_t> kept_degree_;  // how many kept segments end there
   kernel::StarBuilder star_builder_;
   std::vector<TetId> star_;
-  mutable std::vector<TetId> around_;            // scratch of find_edge and find_facet
-  mutable TetId last_;                           // where the last location ended
-  mutable kernel::VertexSet boundary_vertices_;  // scratch of find_cavity
-  mutable std::vector<TetId> queue_;             // the same
+  mutable std::vector<TetId> around_;  // scratch of find_edge and find_facet
+  mutable TetId last_;                 // where the last location ended
+  mutable CavityScratch scratch_;      // of find_cavity
   kernel::InsphereFour insphere_four_ = kernel::insphere_four();
 };
 

@@ -33,6 +33,8 @@ constexpr double kRadiusOverSize = 0.75;
 constexpr double kVertexDistance = 0.6;
 /// Least distance of a new vertex to a locked facet, over the size.
 constexpr double kFacetDistance = 0.4;
+/// Vertices of a batch: so few among so many tets that they seldom disturb each other.
+constexpr std::size_t kTetsPerAttempt = 4000, kMostAttempts = 4096;
 /// Steps of a walk; far above what a walk within one tet's neighbourhood takes.
 constexpr int kWalkSteps = 400;
 
@@ -64,6 +66,7 @@ double squared_distance(Vec3 p, Vec3 a, Vec3 b, Vec3 c) {
 struct Entry {
   TetId tet;
   std::uint32_t stamp = 0;
+  std::uint32_t badness = 0;  ///< class
 };
 
 std::uint32_t stamp_of(const TetComplex::Vertices& v) {
@@ -72,33 +75,49 @@ std::uint32_t stamp_of(const TetComplex::Vertices& v) {
   return h;
 }
 
-/// Bad tets in classes of badness, the worst class first, first in first out within a class.
+/// Bad tets in classes of badness, the worst class first.
 class BadTets {
  public:
-  void push(double badness, Entry entry) {
-    const double octave = 8 * std::log2(std::max(badness, 1.0));
-    const auto k = static_cast<std::size_t>(std::min(octave, static_cast<double>(classes_.size() - 1)));
-    classes_[k].entries.push_back(entry);
-    top_ = std::max(top_, k);
+  static constexpr std::size_t kClasses = 64;
+  static std::size_t class_of(double badness) {
+    const double eighths = 8 * std::log2(std::max(badness, 1.0));
+    return static_cast<std::size_t>(std::min(eighths, static_cast<double>(kClasses - 1)));
   }
-  bool pop(Entry& entry) {
-    while (classes_[top_].head == classes_[top_].entries.size()) {
-      classes_[top_].entries.clear();
-      classes_[top_].head = 0;
-      if (top_ == 0) return false;
-      --top_;
-    }
-    entry = classes_[top_].entries[classes_[top_].head++];
+
+  void push(const Entry& entry) {
+    classes_[entry.badness].push_back(entry);
+    top_ = std::max<std::size_t>(top_, entry.badness);
+  }
+
+  /// About `number` entries of the worst class that came far apart, so that they are likely to lie far apart: one of
+  /// every stretch of it, and the next call one further. None: all have been taken.
+  bool take(std::size_t number, std::vector<Entry>& out) {
+    out.clear();
+    if (column_ == stretch_ && !open_class(number)) return false;
+    for (std::size_t k = column_; k < open_.size(); k += stretch_) out.push_back(open_[k]);
+    ++column_;
     return true;
   }
 
  private:
-  struct Class {
-    std::vector<Entry> entries;
-    std::size_t head = 0;
-  };
-  std::array<Class, 64> classes_;
+  bool open_class(std::size_t number) {
+    open_.clear();
+    while (open_.size() < number) {
+      open_.insert(open_.end(), classes_[top_].begin(), classes_[top_].end());
+      classes_[top_].clear();
+      if (top_ == 0) break;
+      --top_;
+    }
+    if (open_.empty()) return false;
+    stretch_ = (open_.size() + number - 1) / number;
+    column_ = 0;
+    return true;
+  }
+
+  std::array<std::vector<Entry>, kClasses> classes_;
   std::size_t top_ = 0;
+  std::vector<Entry> open_;  ///< of the class that is being taken
+  std::size_t stretch_ = 0, column_ = 0;
 };
 
 /// What is wrong with a tet, and what its mending needs.
@@ -107,6 +126,23 @@ struct Judgement {
   Vec3 centre;         ///< circumcentre
   double radius = 0;
   double least_distance = 0;  ///< of a new vertex to old ones, where that is smaller than what the size demands
+};
+
+/// A bad tet and the place that was found for a vertex.
+struct Attempt {
+  Entry entry;
+  Judgement judgement;
+  Vec3 place;
+  double size = 0;  ///< at the place
+  Insertion insertion;
+  bool found = false;
+  std::vector<Entry> bad;  ///< of the tets that were made
+};
+
+/// What one thread needs for itself.
+struct Scratch {
+  CavityScratch search;
+  kernel::StarBuilder stars;
 };
 
 class Refinement {
@@ -119,22 +155,19 @@ class Refinement {
         field_(field),
         options_(options),
         context_(context),
-        has_local_sizes_(field.options().callback || !field.options().solid_size.empty()) {}
+        has_local_sizes_(field.options().callback || !field.options().solid_size.empty()),
+        scratch_(worker_count(context)) {}
 
   Result<RefineResult> run() {
-    for (std::size_t k = 0; k < complex_.slots(); ++k) {
-      if (k % 4096 == 0 && context_.should_stop()) return context_.stop_error("refinement");
-      queue(TetId(k));
-    }
-    Entry entry;
-    for (std::size_t step = 0; bad_.pop(entry); ++step) {
-      if (step % 256 == 0 && context_.should_stop()) return context_.stop_error("refinement");
-      if (!is_current(entry)) continue;
-      if (result_.inserted >= options_.max_points) {
-        result_.budget_exhausted = true;
-        break;
-      }
-      if (!refine(entry.tet)) unmet_.push_back(entry);
+    measure_vertices();
+    queue_all();
+    while (choose_batch()) {
+      if (context_.should_stop()) return context_.stop_error("refinement");
+      find_places();
+      select_attempts();
+      commit_selected();
+      settle_selected();
+      if (result_.budget_exhausted) break;
     }
     result_.unmet = static_cast<std::size_t>(
         std::count_if(unmet_.begin(), unmet_.end(), [this](const Entry& e) { return is_current(e); }));
@@ -146,13 +179,54 @@ class Refinement {
     return complex_.is_alive(e.tet) && stamp_of(complex_.vertices(e.tet)) == e.stamp;
   }
 
+  std::size_t batch_size() const {
+    return std::clamp<std::size_t>(complex_.alive() / kTetsPerAttempt, 1, kMostAttempts);
+  }
+
+  /// Of the worst tets, some that have no vertex in common; others wait for the next batch. False: there are none.
+  bool choose_batch() {
+    const std::size_t number = batch_size();
+    batch_.clear();
+    ++batch_number_;
+    in_batch_.resize(vertices_.size(), 0);
+    stretch_.clear();
+    stretch_.swap(waiting_);
+    do {
+      for (const Entry& e : stretch_) choose(e);
+    } while (batch_.size() < number && bad_.take(number, stretch_));
+    return !batch_.empty();
+  }
+
+  void choose(const Entry& e) {
+    if (!is_current(e)) return;
+    const auto& v = complex_.vertices(e.tet);
+    if (std::any_of(v.begin(), v.end(), [&](VertexId x) { return in_batch_[x] == batch_number_; })) {
+      waiting_.push_back(e);
+      return;
+    }
+    for (VertexId x : v) in_batch_[x] = batch_number_;
+    batch_.push_back(e);
+  }
+
+  /// body(i, scratch) for i below n, some at a time.
+  template <class Body>
+  void in_parallel(std::size_t n, std::size_t grain, const Body& body) {
+    parallel_for(context_, (n + grain - 1) / grain, [&](std::size_t block, std::size_t worker) {
+      const std::size_t end = std::min(n, (block + 1) * grain);
+      for (std::size_t i = block * grain; i < end; ++i) body(i, scratch_[worker]);
+    });
+  }
+
+  // --- what is bad ---
+
   double size_at(Vec3 p, std::uint32_t region) const { return field_.at_solid(SolidId(region - 1), p); }
 
-  double size_at_vertex(VertexId v) {
-    if (v.value() >= vertex_size_.size()) vertex_size_.resize(vertices_.size(), 0);
-    double& size = vertex_size_[v];
-    if (size == 0) size = field_.at(vertices_.position(v));
-    return size;
+  void measure_vertices() {
+    if (has_local_sizes_) return;
+    vertex_size_.resize(vertices_.size());
+    in_parallel(vertices_.size(), 256, [&](std::size_t v, Scratch&) {
+      if (mesh_.contains(VertexId(v))) vertex_size_[VertexId(v)] = field_.at(vertices_.position(VertexId(v)));
+    });
   }
 
   std::array<Vec3, 4> points(TetId t) const {
@@ -162,7 +236,7 @@ class Refinement {
 
   /// Nearly all tets are good, and this tells so without a root or a look at the field: by the grading, the sizes at
   /// the vertices bound the size at the centroid, which lies within the circumradius of one of them.
-  bool is_surely_good(TetId t) {
+  bool is_surely_good(TetId t) const {
     if (has_local_sizes_) return false;
     const auto p = points(t);
     const Vec3 u = p[0] - p[3], v = p[1] - p[3], w = p[2] - p[3], vw = cross(v, w);
@@ -171,12 +245,12 @@ class Refinement {
     const double volumes2 = twelve_volumes * twelve_volumes;
     const double shortest2 = std::min({u2, v2, w2, norm2(p[1] - p[0]), norm2(p[2] - p[1]), norm2(p[0] - p[2])});
     double least = std::numeric_limits<double>::infinity();
-    for (VertexId x : complex_.vertices(t)) least = std::min(least, size_at_vertex(x));
+    for (VertexId x : complex_.vertices(t)) least = std::min(least, vertex_size_[x]);
     const double largest = kRadiusOverSize * least / (1 + kRadiusOverSize * field_.options().grading);
     return reach2 <= std::min(options_.radius_edge * options_.radius_edge * shortest2, largest * largest) * volumes2;
   }
 
-  Judgement judge(TetId t) {
+  Judgement judge(TetId t) const {
     const auto p = points(t);
     Judgement j;
     j.centre = circumcentre(p[0], p[1], p[2], p[3]);
@@ -195,24 +269,48 @@ class Refinement {
     return j;
   }
 
-  void queue(TetId t) {
-    if (!complex_.is_alive(t) || complex_.region(t) == 0 || complex_.is_ghost(t) || is_surely_good(t)) return;
+  /// Adds the tet if it is bad.
+  void note_if_bad(TetId t, std::vector<Entry>& bad) const {
+    if (is_surely_good(t)) return;
     const double badness = judge(t).badness;
-    if (badness > 1) bad_.push(badness, {t, stamp_of(complex_.vertices(t))});
+    if (badness > 1)
+      bad.push_back({t, stamp_of(complex_.vertices(t)), static_cast<std::uint32_t>(BadTets::class_of(badness))});
   }
 
-  bool refine(TetId t) {
-    const Judgement j = judge(t);
-    const std::uint32_t region = complex_.region(t);
-    const auto off = off_centre(t, j, region);
-    if (off && try_insert(*off, t, j)) return true;
-    if (finite(j.centre) && try_insert(j.centre, t, j)) return true;
-    return insert_on_longest_edge(t, j);
+  void queue_all() {
+    constexpr std::size_t kBlock = 1024;
+    std::vector<std::vector<Entry>> bad((complex_.slots() + kBlock - 1) / kBlock);
+    in_parallel(complex_.slots(), kBlock, [&](std::size_t k, Scratch&) {
+      const TetId t(k);
+      if (complex_.is_alive(t) && complex_.region(t) != 0 && !complex_.is_ghost(t)) note_if_bad(t, bad[k / kBlock]);
+    });
+    for (const auto& block : bad)
+      for (const Entry& e : block) bad_.push(e);
+  }
+
+  // --- places for vertices: nothing is changed ---
+
+  /// For all of the batch, as the mesh is now.
+  void find_places() {
+    if (attempts_.size() < batch_.size()) attempts_.resize(batch_.size());
+    in_parallel(batch_.size(), 8, [&](std::size_t k, Scratch& scratch) {
+      Attempt& attempt = attempts_[k];
+      attempt.entry = batch_[k];
+      attempt.judgement = judge(attempt.entry.tet);
+      attempt.found = find_place(attempt, scratch);
+    });
+  }
+
+  bool find_place(Attempt& attempt, Scratch& scratch) const {
+    const Judgement& j = attempt.judgement;
+    const auto off = off_centre(attempt.entry.tet, j);
+    return (off && is_place(*off, attempt, scratch)) || (finite(j.centre) && is_place(j.centre, attempt, scratch)) ||
+           is_place(middle_of_longest_edge(attempt.entry.tet), attempt, scratch);
   }
 
   /// The point over the smallest facet, towards the circumcentre, at the distance of one size from the facet's
   /// vertices; nothing if the circumcentre is not much farther.
-  std::optional<Vec3> off_centre(TetId t, const Judgement& j, std::uint32_t region) const {
+  std::optional<Vec3> off_centre(TetId t, const Judgement& j) const {
     if (!finite(j.centre)) return std::nullopt;
     const auto p = points(t);
     double best = std::numeric_limits<double>::infinity();
@@ -224,11 +322,21 @@ class Refinement {
       if (r < best) best = r, foot = c;
     }
     if (!finite(foot)) return std::nullopt;
-    const double size = size_at(foot, region);
+    const double size = size_at(foot, complex_.region(t));
     const double height = std::sqrt(std::max(size * size - best * best, 0.36 * size * size));
     const double far = distance(foot, j.centre);
     if (far < 1.2 * height) return std::nullopt;
     return foot + (height / far) * (j.centre - foot);
+  }
+
+  Vec3 middle_of_longest_edge(TetId t) const {
+    double longest = 0;
+    Vec3 middle;
+    for (const auto& [a, b] : kEdge) {
+      const Vec3 p = vertices_.position(complex_.vertex(t, a)), q = vertices_.position(complex_.vertex(t, b));
+      if (distance(p, q) > longest) longest = distance(p, q), middle = 0.5 * (p + q);
+    }
+    return middle;
   }
 
   /// Walks from t to p without crossing locked facets; nothing if p cannot be reached so.
@@ -256,52 +364,27 @@ class Refinement {
     return std::nullopt;
   }
 
-  bool try_insert(Vec3 place, TetId t, const Judgement& j) {
+  /// Whether a vertex may go there; if so the attempt knows all that inserting it takes.
+  bool is_place(Vec3 place, Attempt& attempt, Scratch& scratch) const {
     const Vec3 p = snap(place);
     if (!(std::abs(p.x) < 1 && std::abs(p.y) < 1 && std::abs(p.z) < 1)) return false;
-    const auto at = walk(t, p);
-    return at && insert_at(p, *at, j);
-  }
-
-  bool insert_on_longest_edge(TetId t, const Judgement& j) {
-    double longest = 0;
-    Vec3 middle;
-    for (const auto& [a, b] : kEdge) {
-      const Vec3 p = vertices_.position(complex_.vertex(t, a)), q = vertices_.position(complex_.vertex(t, b));
-      if (distance(p, q) > longest) longest = distance(p, q), middle = 0.5 * (p + q);
-    }
-    return try_insert(middle, t, j);
-  }
-
-  bool insert_at(Vec3 p, TetId at, const Judgement& j) {
-    const std::uint32_t region = complex_.region(at);
-    const double size = size_at(p, region);
-    const double apart = std::min(kVertexDistance * size, j.least_distance);
-    if (is_close_to_corner(p, at, apart)) return false;
-    place_spare(p, region);
-    mesh_.find_cavity(spare_, at, cavity_);
-    if (!cavity_.ok() || !is_legal(cavity_, p, size, apart)) return false;
-    mesh_.commit(cavity_);
-    spare_ = VertexId();
-    ++result_.inserted;
-    for (TetId t : mesh_.last_star()) queue(t);
+    const auto at = walk(attempt.entry.tet, p);
+    if (!at) return false;
+    const double size = size_at(p, complex_.region(*at));
+    const double apart = std::min(kVertexDistance * size, attempt.judgement.least_distance);
+    if (is_close_to_corner(p, *at, apart)) return false;
+    attempt.place = p;
+    attempt.size = size;
+    Cavity& cavity = attempt.insertion.cavity;
+    mesh_.find_cavity_at(p, *at, scratch.search, cavity);
+    if (!cavity.ok() || !is_legal(cavity, p, size, apart)) return false;
+    mesh_.note_walls(attempt.insertion);
     return true;
   }
 
   bool is_close_to_corner(Vec3 p, TetId t, double apart) const {
     const auto corners = points(t);
     return std::any_of(corners.begin(), corners.end(), [&](Vec3 c) { return norm2(p - c) < apart * apart; });
-  }
-
-  /// Refused places reuse the vertex that was made for the first of them.
-  void place_spare(Vec3 p, std::uint32_t region) {
-    const Owner owner = Owner::of(SolidId(region - 1));
-    if (spare_.valid()) {
-      vertices_.move(spare_, p);
-      vertices_.set_owner(spare_, owner);
-    } else {
-      spare_ = vertices_.add(p, owner, {}, Origin::interior);
-    }
   }
 
   bool is_legal(const Cavity& cavity, Vec3 p, double size, double apart) const {
@@ -321,18 +404,78 @@ class Refinement {
     return true;
   }
 
+  // --- insertion ---
+
+  /// In order; what one before it disturbs is queued again.
+  void select_attempts() {
+    selected_.clear();
+    for (std::size_t k = 0; k < batch_.size() && !result_.budget_exhausted; ++k) {
+      Attempt& attempt = attempts_[k];
+      if (!attempt.found) {
+        unmet_.push_back(attempt.entry);
+      } else if (is_disturbed(attempt.insertion.cavity)) {
+        bad_.push(attempt.entry);
+      } else if (result_.inserted >= options_.max_points) {
+        result_.budget_exhausted = true;
+      } else {
+        select(attempt);
+      }
+    }
+  }
+
+  /// Whether a tet of the cavity, or one beside it, is in another one of the batch.
+  bool is_disturbed(const Cavity& cavity) const {
+    const auto goes = [this](TetId t) { return t.value() < goes_.size() && goes_[t] == batch_number_; };
+    return std::any_of(cavity.tets.begin(), cavity.tets.end(), goes) ||
+           std::any_of(cavity.boundary.begin(), cavity.boundary.end(),
+                       [&](const TetFacet& f) { return goes(complex_.neighbour(f.tet, f.local)); });
+  }
+
+  void select(Attempt& attempt) {
+    const std::uint32_t region = complex_.region(attempt.insertion.cavity.tets[0]);
+    const VertexId v = vertices_.add(attempt.place, Owner::of(SolidId(region - 1)), {}, Origin::interior);
+    if (!has_local_sizes_) vertex_size_.push_back(attempt.size);
+    mesh_.reserve(attempt.insertion, v);
+    if (goes_.size() < complex_.slots()) goes_.resize(complex_.slots(), 0);
+    for (TetId t : attempt.insertion.cavity.tets) goes_[t] = batch_number_;
+    selected_.push_back(&attempt);
+    ++result_.inserted;
+  }
+
+  void commit_selected() {
+    for (Scratch& scratch : scratch_) scratch.stars.cover_vertices(vertices_.size());
+    in_parallel(selected_.size(), 8, [&](std::size_t k, Scratch& scratch) {
+      Attempt& attempt = *selected_[k];
+      mesh_.commit(attempt.insertion, scratch.stars);
+      attempt.bad.clear();
+      for (std::size_t i = 0; i < attempt.insertion.walls.size(); ++i)
+        note_if_bad(attempt.insertion.slots[i], attempt.bad);
+    });
+  }
+
+  void settle_selected() {
+    for (Attempt* attempt : selected_) {
+      mesh_.settle(attempt->insertion);
+      for (const Entry& e : attempt->bad) bad_.push(e);
+    }
+  }
+
   Tetrahedralization& mesh_;
   TetComplex& complex_;
   VertexStore& vertices_;
   const SizeField& field_;
   const RefineOptions& options_;
   Context& context_;
-  bool has_local_sizes_;  ///< that do not follow the grading
+  bool has_local_sizes_;          ///< that do not follow the grading
+  std::vector<Scratch> scratch_;  ///< by worker
   IndexedVector<VertexId, double> vertex_size_;
   BadTets bad_;
-  std::vector<Entry> unmet_;
-  VertexId spare_;
-  Cavity cavity_;
+  std::vector<Entry> batch_, waiting_, unmet_, stretch_;
+  IndexedVector<VertexId, std::uint32_t> in_batch_;  ///< the last batch with a tet at the vertex
+  std::vector<Attempt> attempts_;                    ///< of the batch, in its order
+  std::vector<Attempt*> selected_;
+  IndexedVector<TetId, std::uint32_t> goes_;  ///< the last batch with the tet in a cavity
+  std::uint32_t batch_number_ = 0;
   RefineResult result_;
 };
 
