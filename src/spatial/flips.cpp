@@ -42,10 +42,10 @@ struct AnyPositive {
 /// Finds the sheet of facets between the apexes `above` and `below` that is best exchanged for their edge.
 class SheetRemoval {
  public:
-  SheetRemoval(Tetrahedralization& mesh, const TetQuality& quality, double at_least)
+  SheetRemoval(const Tetrahedralization& mesh, const TetQuality& quality, double at_least)
       : mesh_(mesh), complex_(mesh.complex()), quality_(quality), at_least_(at_least) {}
 
-  std::optional<double> run(TetFacet facet) {
+  std::optional<Removal> run(TetFacet facet) {
     const TetFacet other = complex_.mirror(facet);
     if (complex_.is_ghost(facet.tet) || complex_.is_ghost(other.tet)) return std::nullopt;
     if (complex_.is_locked(facet)) return std::nullopt;
@@ -56,8 +56,7 @@ class SheetRemoval {
     const double worst = std::min(
         {cross(u, v, facet.tet, other.tet), cross(v, w, facet.tet, other.tet), cross(w, u, facet.tet, other.tet)});
     if (!(worst > at_least_) || !flips::is_free(complex_, exchange_)) return std::nullopt;
-    flips::commit(mesh_, exchange_);
-    return worst;
+    return Removal{exchange_, worst};
   }
 
  private:
@@ -113,7 +112,7 @@ class SheetRemoval {
     return orient3d(a, b, c, d) > 0 ? quality_(a, b, c, d) : -std::numeric_limits<double>::infinity();
   }
 
-  Tetrahedralization& mesh_;
+  const Tetrahedralization& mesh_;
   const TetComplex& complex_;
   const TetQuality& quality_;
   double at_least_;
@@ -154,8 +153,8 @@ bool flip32(Tetrahedralization& mesh, TetEdge edge) {
   return true;
 }
 
-std::optional<double> remove_edge(Tetrahedralization& mesh, TetEdge edge, const TetQuality& quality, double at_least,
-                                  int limit) {
+std::optional<Removal> find_edge_removal(const Tetrahedralization& mesh, TetEdge edge, const TetQuality& quality,
+                                         double at_least, int limit) {
   const auto ring = flips::ring_of(mesh.complex(), edge, static_cast<std::size_t>(std::max(limit, 0)));
   if (!ring || mesh.is_kept(ring->p, ring->q)) return std::nullopt;
   Exchange exchange;
@@ -164,13 +163,28 @@ std::optional<double> remove_edge(Tetrahedralization& mesh, TetEdge edge, const 
   const FunctionMeasure measure{quality, at_least};
   const auto plan = flips::RingPlanner(mesh, *ring, measure).plan();
   if (!plan) return std::nullopt;
-  flips::commit(mesh, flips::exchange_of(*ring, *plan));
-  return plan->quality;
+  return Removal{flips::exchange_of(*ring, *plan), plan->quality};
+}
+
+std::optional<Removal> find_faces_removal(const Tetrahedralization& mesh, TetFacet facet, const TetQuality& quality,
+                                          double at_least) {
+  return SheetRemoval(mesh, quality, at_least).run(facet);
+}
+
+std::optional<double> remove_edge(Tetrahedralization& mesh, TetEdge edge, const TetQuality& quality, double at_least,
+                                  int limit) {
+  const auto found = find_edge_removal(mesh, edge, quality, at_least, limit);
+  if (!found) return std::nullopt;
+  flips::commit(mesh, found->exchange);
+  return found->quality;
 }
 
 std::optional<double> remove_faces(Tetrahedralization& mesh, TetFacet facet, const TetQuality& quality,
                                    double at_least) {
-  return SheetRemoval(mesh, quality, at_least).run(facet);
+  const auto found = find_faces_removal(mesh, facet, quality, at_least);
+  if (!found) return std::nullopt;
+  flips::commit(mesh, found->exchange);
+  return found->quality;
 }
 
 }  // namespace curvetet

@@ -6,6 +6,7 @@
 #include <functional>
 #include <optional>
 
+#include "spatial/flips_exchange.h"
 #include "spatial/tetrahedralization.h"
 
 namespace curvetet {
@@ -30,6 +31,16 @@ std::optional<double> remove_edge(Tetrahedralization& mesh, TetEdge edge, const 
 /// better.
 std::optional<double> remove_faces(Tetrahedralization& mesh, TetFacet facet, const TetQuality& quality,
                                    double at_least);
+
+/// What these would do, for several threads at a time while nothing changes; flips::commit does it.
+struct Removal {
+  flips::Exchange exchange;
+  double quality = 0;  ///< least of the new tets
+};
+std::optional<Removal> find_edge_removal(const Tetrahedralization& mesh, TetEdge edge, const TetQuality& quality,
+                                         double at_least, int limit = 9);
+std::optional<Removal> find_faces_removal(const Tetrahedralization& mesh, TetFacet facet, const TetQuality& quality,
+                                          double at_least);
 
 /// Recovers the edge ab by flips without points: removes the facets and edges in its way, recursively to `depth`. True
 /// if ab is then an edge; else the same tets are there as before (in other slots). Fails at once if a vertex lies on

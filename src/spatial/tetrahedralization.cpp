@@ -97,12 +97,13 @@ Refusal Tetrahedralization::insert(VertexId vertex, TetId hint) {
 }
 
 template <class Until>
-void Tetrahedralization::flood_star(VertexId v, std::vector<TetId>& out, const Until& until) const {
+void Tetrahedralization::flood_star(VertexId v, kernel::SmallMarks& marks, std::vector<TetId>& out,
+                                    const Until& until) const {
   out.clear();
   if (!contains(v)) return;
-  complex_.start_flood();
+  marks.start();
   out.push_back(vertex_tet_[v]);
-  complex_.set_flood_state(out[0], kernel::kInside);
+  marks.set(out[0].value(), kernel::kInside);
   for (std::size_t k = 0; k < out.size(); ++k) {
     const TetId t = out[k];
     if (until(t)) {
@@ -112,21 +113,21 @@ void Tetrahedralization::flood_star(VertexId v, std::vector<TetId>& out, const U
     const int own = complex_.local(t, v);
     for (int i = 0; i < 4; ++i) {
       const TetId next = complex_.neighbour(t, i);
-      if (i == own || complex_.flood_state(next) != 0) continue;
-      complex_.set_flood_state(next, kernel::kInside);
+      if (i == own || marks.state(next.value()) != 0) continue;
+      marks.set(next.value(), kernel::kInside);
       out.push_back(next);
     }
   }
 }
 
-void Tetrahedralization::star(VertexId v, std::vector<TetId>& out) const {
-  flood_star(v, out, [](TetId) { return false; });
+void Tetrahedralization::star(VertexId v, kernel::SmallMarks& marks, std::vector<TetId>& out) const {
+  flood_star(v, marks, out, [](TetId) { return false; });
 }
 
 std::optional<TetEdge> Tetrahedralization::find_edge(VertexId a, VertexId b) const {
   if (!contains(a) || !contains(b) || a == b) return std::nullopt;
   int j = -1;
-  flood_star(a, around_, [&](TetId t) { return (j = complex_.local(t, b)) >= 0; });
+  flood_star(a, scratch_.marks, around_, [&](TetId t) { return (j = complex_.local(t, b)) >= 0; });
   if (j < 0) return std::nullopt;
   return TetEdge{around_[0], complex_.local(around_[0], a), j};
 }
@@ -134,7 +135,7 @@ std::optional<TetEdge> Tetrahedralization::find_edge(VertexId a, VertexId b) con
 std::optional<TetFacet> Tetrahedralization::find_facet(VertexId a, VertexId b, VertexId c) const {
   if (!contains(a) || !contains(b) || !contains(c) || a == b || b == c || c == a) return std::nullopt;
   int j = -1, k = -1;
-  flood_star(a, around_, [&](TetId t) {
+  flood_star(a, scratch_.marks, around_, [&](TetId t) {
     j = complex_.local(t, b);
     k = complex_.local(t, c);
     return j >= 0 && k >= 0;

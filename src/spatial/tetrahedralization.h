@@ -4,8 +4,8 @@
 // Before: every vertex lies on the grid (geometry/frame.h); no two at one place.
 // After each commit: neighbour links are reciprocal, every finite tet is positive (exactly), ghosts cover the hull, and
 // without locks and kept segments the tetrahedralization is Delaunay of the symbolically perturbed points.
-// Queries and find_cavity use scratch arrays of the object: not to be called on one object from several threads. Only
-// find_cavity_at is.
+// Queries and find_cavity use scratch arrays of the object: not to be called on one object from several threads, but
+// for those that say so.
 #pragma once
 
 #include <array>
@@ -113,7 +113,9 @@ class Tetrahedralization {
   bool contains(VertexId v) const { return v.value() < vertex_tet_.size() && vertex_tet_[v].valid(); }
   TetId tet_of(VertexId v) const { return vertex_tet_[v]; }
   /// All tets (ghosts too) around a vertex, into `out` (cleared first).
-  void star(VertexId v, std::vector<TetId>& out) const;
+  void star(VertexId v, std::vector<TetId>& out) const { star(v, scratch_.marks, out); }
+  /// The same for several threads at a time, each with marks of its own.
+  void star(VertexId v, kernel::SmallMarks& marks, std::vector<TetId>& out) const;
   std::optional<TetEdge> find_edge(VertexId a, VertexId b) const;
   /// The facet with these vertices, seen from one of its tets, if it exists.
   std::optional<TetFacet> find_facet(VertexId a, VertexId b, VertexId c) const;
@@ -141,7 +143,7 @@ class Tetrahedralization {
   kernel::Sites sites() const { return {vertices_->sites()}; }
   /// The star in the order of a flood; stops at the first tet that `until` holds for, which becomes the first of `out`.
   template <class Until>
-  void flood_star(VertexId v, std::vector<TetId>& out, const Until& until) const;
+  void flood_star(VertexId v, kernel::SmallMarks& marks, std::vector<TetId>& out, const Until& until) const;
   void cover_vertices();  ///< grows the tables by vertex to the store's size
 
   const VertexStore* vertices_;

@@ -13,6 +13,7 @@
 #include <cmath>
 #include <iterator>
 #include <numbers>
+#include <optional>
 #include <vector>
 
 #include "geometry/frame.h"
@@ -42,6 +43,29 @@ constexpr std::size_t kSlotsPerStar = 200;
 /// facets are long, bad tets are the body's fault and every attempt fails.
 constexpr std::size_t kFailedInsertions = 100;
 
+/// Tets or vertices that are looked at before any of them is changed, and how many of these by one thread at a time.
+constexpr std::size_t kBatch = 1024, kGrain = 16;
+
+/// What one thread needs for itself.
+struct Worker {
+  kernel::SmallMarks marks;
+  std::vector<TetId> star;
+  StarFacets facets;
+  StarOptimiser optimiser;
+};
+
+/// What would replace a bad tet.
+struct Reconnection {
+  flips::Exchange exchange;
+  std::size_t ImproveResult::*counter = nullptr;
+};
+
+/// Where a vertex would go, and the vertices that it depends on.
+struct Move {
+  std::optional<Vec3> there;
+  std::vector<VertexId> around;
+};
+
 class Improvement {
  public:
   Improvement(Tetrahedralization& mesh, VertexStore& vertices, const ImproveOptions& options, Context& context)
@@ -51,7 +75,8 @@ class Improvement {
         options_(options),
         context_(context),
         insertion_(mesh, vertices),
-        goal_(std::sin(options.goal * kDegree)) {}
+        goal_(std::sin(options.goal * kDegree)),
+        workers_(worker_count(context)) {}
 
   Result<ImproveResult> run() {
     collect_below();
@@ -110,9 +135,20 @@ class Improvement {
 
   /// Of all tets, those below the goal. From here on only what is near a change has to be looked at.
   void collect_below() {
-    for (std::size_t k = 0; k < complex_.slots(); ++k) {
-      if (is_inside(TetId(k)) && quality(TetId(k)) < goal_) below_.push_back(TetId(k));
-    }
+    collect_in_order(below_, [this](TetId t) { return quality(t) < goal_; });
+  }
+
+  /// The tets inside that are asked for, ascending.
+  template <class Asked>
+  void collect_in_order(std::vector<TetId>& out, const Asked& asked) const {
+    constexpr std::size_t kBlock = 8192;
+    std::vector<std::vector<TetId>> found((complex_.slots() + kBlock - 1) / kBlock);
+    parallel_for(context_, found.size(), [&](std::size_t block) {
+      const std::size_t end = std::min(complex_.slots(), (block + 1) * kBlock);
+      for (std::size_t k = block * kBlock; k < end; ++k)
+        if (is_inside(TetId(k)) && asked(TetId(k))) found[block].push_back(TetId(k));
+    });
+    for (const auto& block : found) out.insert(out.end(), block.begin(), block.end());
   }
 
   void tidy_below() {
@@ -156,39 +192,72 @@ class Improvement {
   void collect_bad_with_touched() {
     is_touched_.assign(vertices_.size(), 0);
     for (const VertexId v : touched_) is_touched_[v] = 1;
-    for (std::size_t k = 0; k < complex_.slots(); ++k) {
-      const TetId t(k);
-      if (!is_inside(t)) continue;
+    collect_in_order(bad_, [this](TetId t) {
       const auto& v = complex_.vertices(t);
-      if ((is_touched_[v[0]] | is_touched_[v[1]] | is_touched_[v[2]] | is_touched_[v[3]]) != 0 && quality(t) < goal_)
-        bad_.push_back(t);
-    }
+      return (is_touched_[v[0]] | is_touched_[v[1]] | is_touched_[v[2]] | is_touched_[v[3]]) != 0 && quality(t) < goal_;
+    });
   }
 
+  // --- reconnection ---
+
+  /// All of a batch are looked at as the mesh is before it; where one before has changed it, once more in its turn.
   void reconnect() {
-    for (std::size_t k = 0; k < bad_.size() && !should_stop(k); ++k) {
-      if (!is_inside(bad_[k])) continue;
-      // All that replaces the tet shares a vertex with it.
-      const auto v = complex_.vertices(bad_[k]);
-      if (reconnect(bad_[k])) touched_.insert(touched_.end(), v.begin(), v.end());
+    for (std::size_t begin = 0; begin < bad_.size() && !should_stop(begin); begin += kBatch) {
+      start_batch();
+      const std::size_t count = std::min(kBatch, bad_.size() - begin);
+      reconnections_.resize(count);
+      parallel_for(context_, (count + kGrain - 1) / kGrain, [&](std::size_t block) {
+        for (std::size_t k = block * kGrain; k < std::min(count, (block + 1) * kGrain); ++k)
+          reconnections_[k] = find_reconnection(bad_[begin + k]);
+      });
+      for (std::size_t k = 0; k < count; ++k) {
+        if (reconnections_[k] && is_disturbed(reconnections_[k]->exchange))
+          reconnections_[k] = find_reconnection(bad_[begin + k]);
+        if (reconnections_[k]) commit(bad_[begin + k], *reconnections_[k]);
+      }
     }
   }
 
-  bool reconnect(TetId t) {
+  std::optional<Reconnection> find_reconnection(TetId t) const {
+    if (!is_inside(t)) return std::nullopt;
     const double now = quality(t);
-    if (now >= goal_) return false;
-    for (const auto& [i, j] : kEdge) {
-      if (!remove_edge(mesh_, {t, i, j}, least_sine, now)) continue;
-      ++result_.edge_removals;
-      return true;
-    }
-    for (int i = 0; i < 4; ++i) {
-      if (!remove_faces(mesh_, {t, i}, least_sine, now)) continue;
-      ++result_.face_removals;
-      return true;
-    }
-    return false;
+    if (now >= goal_) return std::nullopt;
+    for (const auto& [i, j] : kEdge)
+      if (const auto found = find_edge_removal(mesh_, {t, i, j}, least_sine, now))
+        return Reconnection{found->exchange, &ImproveResult::edge_removals};
+    for (int i = 0; i < 4; ++i)
+      if (const auto found = find_faces_removal(mesh_, {t, i}, least_sine, now))
+        return Reconnection{found->exchange, &ImproveResult::face_removals};
+    return std::nullopt;
   }
+
+  void start_batch() {
+    ++batch_number_;
+    changed_.resize(vertices_.size(), 0);
+  }
+  bool is_changed(VertexId v) const { return changed_[v] == batch_number_; }
+
+  /// Whether a change of this batch is at one of the tets that would go.
+  bool is_disturbed(const flips::Exchange& exchange) const {
+    return std::any_of(exchange.old_tets.begin(), exchange.old_tets.end(), [this](TetId t) {
+      if (!complex_.is_alive(t)) return true;
+      const auto& v = complex_.vertices(t);
+      return std::any_of(v.begin(), v.end(), [this](VertexId x) { return is_changed(x); });
+    });
+  }
+
+  void commit(TetId t, const Reconnection& reconnection) {
+    const flips::Exchange& exchange = reconnection.exchange;
+    // All that replaces the tet shares a vertex with it.
+    const auto v = complex_.vertices(t);
+    touched_.insert(touched_.end(), v.begin(), v.end());
+    for (TetId old : exchange.old_tets)
+      for (VertexId x : complex_.vertices(old)) changed_[x] = batch_number_;
+    ++(result_.*reconnection.counter);
+    flips::commit(mesh_, exchange);
+  }
+
+  // --- smoothing ---
 
   /// The interior vertices of the bad tets that are left.
   void collect_movable() {
@@ -203,47 +272,64 @@ class Improvement {
     movable_.erase(std::unique(movable_.begin(), movable_.end()), movable_.end());
   }
 
+  /// Each vertex of a batch looks for its best place as the mesh is before it; where a neighbour has moved, once more
+  /// in its turn.
   void smooth() {
     collect_movable();
-    for (std::size_t k = 0; k < movable_.size() && !should_stop(k); ++k) {
-      if (!smooth(movable_[k])) continue;
-      touched_.push_back(movable_[k]);
-      ++result_.moves;
+    for (std::size_t begin = 0; begin < movable_.size() && !should_stop(begin); begin += kBatch) {
+      start_batch();
+      const std::size_t count = std::min(kBatch, movable_.size() - begin);
+      moves_.resize(std::max(count, moves_.size()));
+      parallel_for(context_, (count + kGrain - 1) / kGrain, [&](std::size_t block, std::size_t worker) {
+        for (std::size_t k = block * kGrain; k < std::min(count, (block + 1) * kGrain); ++k)
+          find_move(movable_[begin + k], workers_[worker], moves_[k]);
+      });
+      for (std::size_t k = 0; k < count; ++k) {
+        const VertexId v = movable_[begin + k];
+        if (std::any_of(moves_[k].around.begin(), moves_[k].around.end(), [this](VertexId x) { return is_changed(x); }))
+          find_move(v, workers_[0], moves_[k]);
+        if (!moves_[k].there) continue;
+        vertices_.move(v, *moves_[k].there);
+        changed_[v] = batch_number_;
+        touched_.push_back(v);
+        ++result_.moves;
+      }
     }
   }
 
   /// The facets that an interior vertex sees; false if one of its own is locked.
-  bool collect_facets(VertexId v) {
-    mesh_.star(v, star_);
-    facets_.clear();
-    for (TetId t : star_) {
+  bool collect_facets(VertexId v, Worker& worker) const {
+    mesh_.star(v, worker.marks, worker.star);
+    worker.facets.clear();
+    for (TetId t : worker.star) {
       const int i = complex_.local(t, v);
       if (complex_.is_ghost(t) || complex_.is_locked({t, (i + 1) % 4}) || complex_.is_locked({t, (i + 2) % 4}) ||
           complex_.is_locked({t, (i + 3) % 4})) {
         return false;
       }
       const auto f = complex_.facet_vertices({t, i});
-      facets_.push_back({vertices_.position(f[0]), vertices_.position(f[1]), vertices_.position(f[2])});
+      worker.facets.push_back({vertices_.position(f[0]), vertices_.position(f[1]), vertices_.position(f[2])});
     }
     return true;
   }
 
-  bool smooth(VertexId v) {
-    if (!collect_facets(v)) return false;
+  void find_move(VertexId v, Worker& worker, Move& move) const {
+    move.there.reset();
+    move.around.clear();
+    if (!collect_facets(v, worker)) return;
+    for (TetId t : worker.star)
+      for (VertexId x : complex_.vertices(t)) move.around.push_back(x);
     const Vec3 here = vertices_.position(v);
-    const double now = worst_in_star(facets_, here);
-    if (now >= goal_) return false;
-    const Vec3 there = optimiser_.optimise(facets_, here);
-    if (!(worst_in_star(facets_, there) > now * (1 + 1e-3))) return false;
-    return move(v, there);
+    const double now = worst_in_star(worker.facets, here);
+    if (now >= goal_) return;
+    const Vec3 there = worker.optimiser.optimise(worker.facets, here);
+    if (worst_in_star(worker.facets, there) > now * (1 + 1e-3) && keeps_positive(worker.facets, there))
+      move.there = there;
   }
 
-  bool move(VertexId v, Vec3 there) {
-    for (const auto& f : facets_) {
-      if (orient3d(f[0], f[1], f[2], there) <= 0) return false;
-    }
-    vertices_.move(v, there);
-    return true;
+  static bool keeps_positive(const StarFacets& facets, Vec3 there) {
+    return std::all_of(facets.begin(), facets.end(),
+                       [&](const auto& f) { return orient3d(f[0], f[1], f[2], there) > 0; });
   }
 
   /// A needle, a triangle with an angle below the goal, over which no tet is good, keeps the worst tet of a star bad
@@ -261,18 +347,20 @@ class Improvement {
   }
 
   bool smooth_beside_needles(VertexId v) {
-    if (!collect_facets(v)) return false;
-    const auto first = std::partition(facets_.begin(), facets_.end(), [](const auto& f) { return !is_needle(f); });
-    const StarFacets others(facets_.begin(), first), needles(first, facets_.end());
+    if (!collect_facets(v, workers_[0])) return false;
+    StarFacets& facets = workers_[0].facets;
+    const auto first = std::partition(facets.begin(), facets.end(), [](const auto& f) { return !is_needle(f); });
+    const StarFacets others(facets.begin(), first), needles(first, facets.end());
     if (others.empty() || needles.empty()) return false;
     const Vec3 here = vertices_.position(v);
     const double now = worst_in_star(others, here);
     const double least = std::min(worst_in_star(needles, here), std::sin(kLeastOverNeedle * kDegree));
-    const std::size_t bad = count_bad(here);
-    Vec3 there = optimiser_.optimise(others, here);
+    const std::size_t bad = count_bad(facets, here);
+    Vec3 there = workers_[0].optimiser.optimise(others, here);
     for (int halving = 0; halving < 4; ++halving, there = snap(0.5 * (here + there))) {
       if (worst_in_star(others, there) > now * (1 + 1e-3) && worst_in_star(needles, there) >= least &&
-          count_bad(there) <= bad && move(v, there)) {
+          count_bad(facets, there) <= bad && keeps_positive(facets, there)) {
+        vertices_.move(v, there);
         ++result_.moves;
         return true;
       }
@@ -280,8 +368,8 @@ class Improvement {
     return false;
   }
 
-  std::size_t count_bad(Vec3 p) const {
-    return static_cast<std::size_t>(std::count_if(facets_.begin(), facets_.end(), [&](const auto& f) {
+  static std::size_t count_bad(const StarFacets& facets, Vec3 p) {
+    return static_cast<std::size_t>(std::count_if(facets.begin(), facets.end(), [&](const auto& f) {
       return least_sine(f[0], f[1], f[2], p) < std::sin(kNeedleGoal * kDegree);
     }));
   }
@@ -344,8 +432,11 @@ class Improvement {
   std::vector<TetId> bad_, star_;
   std::vector<VertexId> touched_, movable_;
   IndexedVector<VertexId, char> is_touched_;
-  StarFacets facets_;
-  StarOptimiser optimiser_;
+  std::vector<Worker> workers_;
+  std::vector<std::optional<Reconnection>> reconnections_;  ///< of a batch
+  std::vector<Move> moves_;                                 ///< the same
+  IndexedVector<VertexId, std::uint32_t> changed_;          ///< the last batch that changed a tet at the vertex
+  std::uint32_t batch_number_ = 0;
   ImproveResult result_;
 };
 

@@ -34,7 +34,7 @@ constexpr double kVertexDistance = 0.6;
 /// Least distance of a new vertex to a locked facet, over the size.
 constexpr double kFacetDistance = 0.4;
 /// Vertices of a batch: so few among so many tets that they seldom disturb each other.
-constexpr std::size_t kTetsPerAttempt = 4000, kMostAttempts = 4096;
+constexpr std::size_t kTetsPerAttempt = 2000, kMostAttempts = 256;
 /// Steps of a walk; far above what a walk within one tet's neighbourhood takes.
 constexpr int kWalkSteps = 400;
 
