@@ -25,7 +25,7 @@ class Context {
   ProgressSink on_progress;  ///< fraction in [0,1] of the whole run, never falls
   LogSink on_log;
   std::uint64_t seed = 1;
-  int threads = 0;  ///< 0: all cores
+  int threads = 0;  ///< 0: all cores; never more than there are
   CheckLevel check_level = CheckLevel::cheap;
   std::optional<std::chrono::steady_clock::time_point> deadline;
   std::size_t memory_limit = 0;  ///< bytes of our own arrays; 0: none
@@ -60,6 +60,6 @@ void parallel_for(const Context& context, std::size_t n, const std::function<voi
 /// The same with the number of the worker that calls, below worker_count(), for scratch arrays that need no content.
 void parallel_for(const Context& context, std::size_t n,
                   const std::function<void(std::size_t i, std::size_t worker)>& body);
-std::size_t worker_count(const Context& context);
+std::size_t worker_count(const Context& context);  ///< at least 1
 
 }  // namespace curvetet

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 #include <tbb/blocked_range.h>
+#include <tbb/info.h>
 #include <tbb/parallel_for.h>
 #include <tbb/task_arena.h>
 
@@ -31,17 +32,24 @@ void Context::advance(double share) {
   if (on_progress) on_progress(stage_, reported_);
 }
 
+std::size_t worker_count(const Context& context) {
+  // The thread library warns on the terminal if it is asked for more threads than the machine has.
+  const int most = tbb::info::default_concurrency();
+  return static_cast<std::size_t>(context.threads > 0 ? std::min(context.threads, most) : most);
+}
+
 void parallel_for(const Context& context, std::size_t n, const std::function<void(std::size_t)>& body) {
   parallel_for(context, n, [&](std::size_t i, std::size_t) { body(i); });
 }
 
 void parallel_for(const Context& context, std::size_t n,
                   const std::function<void(std::size_t i, std::size_t worker)>& body) {
-  if (context.threads == 1 || n < 2) {
+  const std::size_t workers = worker_count(context);
+  if (workers == 1 || n < 2) {
     for (std::size_t i = 0; i < n; ++i) body(i, 0);
     return;
   }
-  tbb::task_arena arena(context.threads > 0 ? context.threads : tbb::task_arena::automatic);
+  tbb::task_arena arena(static_cast<int>(workers));
   arena.execute([&] {
     tbb::parallel_for(
         tbb::blocked_range<std::size_t>(0, n, 1),
@@ -51,10 +59,6 @@ void parallel_for(const Context& context, std::size_t n,
         },
         tbb::simple_partitioner());
   });
-}
-
-std::size_t worker_count(const Context& context) {
-  return static_cast<std::size_t>(context.threads > 0 ? context.threads : tbb::this_task_arena::max_concurrency());
 }
 
 }  // namespace curvetet

@@ -46,7 +46,7 @@ class TetComplex {
   /// For loops that read or write all of a tet; until the next tet is added.
   Tet* tets() { return tets_.data(); }
   const Tet* tets() const { return tets_.data(); }
-  /// What a tet's stamp is in state 0 of the present flood; states are added.
+  /// What a tet's stamp is in state 0 of the present flood; states 1, 2 and 3 are added.
   std::uint32_t flood() const { return flood_; }
 
   std::size_t slots() const { return tets_.size(); }  ///< alive and free slots
@@ -113,13 +113,8 @@ class TetComplex {
   bool mark(TetId t, int which) const { return (tets_[t.value()].flags >> (4 + which)) & 1U; }
   void set_mark(TetId t, int which, bool on);
 
-  // States 1, 2 and 3 of tets in one flood at a time: scratch, not part of the value, hence writable through const.
-  void start_flood() const;  ///< all states become 0
-  std::uint32_t flood_state(TetId t) const {
-    const std::uint32_t state = tets_[t.value()].stamp - flood_;
-    return state < 4 ? state : 0;
-  }
-  void set_flood_state(TetId t, std::uint32_t state) const { tets_[t.value()].stamp = flood_ + state; }
+  /// The states of all tets become 0. One flood at a time; scratch, not part of the value, hence const.
+  void start_flood() const;
 
   void reserve(std::size_t tets);
   std::size_t bytes() const;

@@ -36,7 +36,7 @@ class Stream {
   std::uint64_t state_;
 };
 
-/// States of tets while a cavity is found (TetComplex::flood_state).
+/// States of tets while a cavity is found.
 inline constexpr std::uint32_t kOutside = 1;  ///< seen, not in the cavity
 inline constexpr std::uint32_t kInside = 2;   ///< this and larger: in the cavity
 inline constexpr std::uint32_t kBase = 3;     ///< in the cavity, and must stay there

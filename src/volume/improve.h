@@ -35,9 +35,9 @@ struct ImproveResult {
 /// what it replaced, but for tets over needles (triangles with an angle below five degrees): these may lose down to one
 /// degree for the others' sake. Boundary vertices have not moved, kept segments are there. Locked facets are unchanged,
 /// but for the exchange of two locked facets of one CAD face for the other two facets of a flat tet, where
-/// `facet_allowed` agrees: that tet then belongs to what was on the other side. Ends: rounds and sweeps are bounded,
-/// and each change raises the worst tet of what it replaces. An error only if the context asks to stop; the mesh is
-/// then valid.
+/// `facet_allowed` agrees: that tet then belongs to what was on the other side. The same for any number of threads.
+/// Ends: rounds and sweeps are bounded, and each change raises the worst tet of what it replaces. An error only if the
+/// context asks to stop; the mesh is then valid.
 Result<ImproveResult> improve(Tetrahedralization& mesh, VertexStore& vertices, const ImproveOptions& options,
                               Context& context);
 

@@ -1,8 +1,9 @@
-// What building is made of: the curve that points are sorted along, and four spheres at once.
+// What building and insertion are made of: the curve that points are sorted along, four spheres at once, marks.
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cstdlib>
+#include <map>
 #include <random>
 #include <vector>
 
@@ -10,9 +11,26 @@
 #include "geometry/frame.h"
 #include "predicates/predicates.h"
 #include "spatial/insphere_four.h"
+#include "spatial/small_marks.h"
 
 namespace curvetet::kernel {
 namespace {
+
+TEST(SmallMarks, AgreeWithAMap) {
+  std::mt19937 random(3);
+  SmallMarks marks;
+  for (int round = 0; round < 50; ++round) {
+    marks.start();
+    std::map<std::uint32_t, std::uint32_t> expected;
+    std::uniform_int_distribution<std::uint32_t> id(0, round % 2 == 0 ? 60 : 4000000000U), state(1, 3);
+    for (int k = 0; k < 40 * round; ++k) {
+      const std::uint32_t at = id(random);
+      EXPECT_EQ(marks.state(at), expected.contains(at) ? expected[at] : 0);
+      marks.set(at, expected[at] = state(random));
+    }
+    for (const auto& [at, value] : expected) ASSERT_EQ(marks.state(at), value);
+  }
+}
 
 TEST(Hilbert, GoesThroughEveryCellByStepsToANeighbour) {
   for (const int bits : {1, 2, 4}) {

@@ -286,10 +286,45 @@ TEST(Insert, FindingACavityChangesNothing) {
   EXPECT_EQ(one.boundary, other.boundary);
   EXPECT_EQ(finite_tets(mesh), before);
   expect_valid(mesh);
+  Insertion insertion;
+  CavityScratch scratch;
+  mesh.find_cavity_at(store.position(v), mesh.locate(store.position(v)), scratch, insertion.cavity);
+  EXPECT_EQ(insertion.cavity.tets, one.tets);
+  EXPECT_EQ(insertion.cavity.boundary, one.boundary);
   mesh.commit(one);
   EXPECT_TRUE(mesh.contains(v));
   EXPECT_EQ(mesh.last_star().size(), one.boundary.size());
   expect_valid(mesh);
+}
+
+/// Cavities that have nothing in common are found first and committed then, as refinement does on many threads: the
+/// outcome is that of one insertion after the other.
+TEST(Insert, ManyAtATime) {
+  const Context context;
+  VertexStore store = make_store(PointSet::cube, 2000, 1), again = store;
+  Tetrahedralization many(store, 1), one_by_one(again, 1);
+  ASSERT_TRUE(many.build(all_vertices(store), context).ok());
+  ASSERT_TRUE(one_by_one.build(all_vertices(again), context).ok());
+  std::vector<Vec3> places;
+  for (const double x : {-0.6, 0.0, 0.6})
+    for (const double y : {-0.6, 0.0, 0.6})
+      for (const double z : {-0.6, 0.0, 0.6}) places.push_back(oracle::to_grid({x, y, z}));
+  std::vector<Insertion> insertions(places.size());
+  CavityScratch scratch;
+  for (std::size_t k = 0; k < places.size(); ++k) {
+    many.find_cavity_at(places[k], many.locate(places[k]), scratch, insertions[k].cavity);
+    ASSERT_TRUE(insertions[k].cavity.ok());
+    many.note_walls(insertions[k]);
+  }
+  for (std::size_t k = 0; k < places.size(); ++k)
+    many.reserve(insertions[k], store.add(places[k], {}, {}, Origin::interior));
+  kernel::StarBuilder builder;
+  builder.cover_vertices(store.size());
+  for (Insertion& insertion : insertions) many.commit(insertion, builder);
+  for (Insertion& insertion : insertions) many.settle(insertion);
+  expect_valid(many);
+  for (const Vec3& p : places) ASSERT_EQ(one_by_one.insert(again.add(p, {}, {}, Origin::interior)), Refusal::none);
+  EXPECT_EQ(finite_tets(many), finite_tets(one_by_one));
 }
 
 }  // namespace

@@ -18,6 +18,19 @@ struct Body {
   std::unique_ptr<Tetrahedralization> mesh;
 };
 
+/// The same vertices in the same places and the same tets in the same slots.
+inline bool are_same(const Body& a, const Body& b) {
+  const TetComplex &one = a.mesh->complex(), &other = b.mesh->complex();
+  if (a.store.size() != b.store.size() || one.slots() != other.slots()) return false;
+  for (std::size_t v = 0; v < a.store.size(); ++v)
+    if (a.store.position(VertexId(v)) != b.store.position(VertexId(v))) return false;
+  for (std::size_t t = 0; t < one.slots(); ++t) {
+    if (one.is_alive(TetId(t)) != other.is_alive(TetId(t))) return false;
+    if (one.is_alive(TetId(t)) && one.vertices(TetId(t)) != other.vertices(TetId(t))) return false;
+  }
+  return true;
+}
+
 /// A turn about an axis through no corner, so that points on flat and ruled faces are rounded off them.
 inline Vec3 turned(Vec3 p) {
   const double c = std::cos(0.3), s = std::sin(0.3);

@@ -155,6 +155,21 @@ TEST(Improve, OnlyTetsOverNeedlesStayBadBesideAStrip) {
   EXPECT_EQ(others, 0U);
 }
 
+TEST(Improve, SameForAnyNumberOfThreads) {
+  std::vector<std::unique_ptr<Body>> bodies;
+  for (const int threads : {1, 1, 2, 5}) {
+    bodies.push_back(refined(torus_body(0.4, 0.15, 0.04), 0.03));
+    Body& body = *bodies.back();
+    Context context;
+    context.threads = threads;
+    const auto result = improve(*body.mesh, body.store, {}, context);
+    ASSERT_TRUE(result.ok());
+    EXPECT_GT(result.value().edge_removals, 200U);
+    EXPECT_GT(result.value().moves, 20U);
+    EXPECT_TRUE(are_same(body, *bodies.front())) << threads;
+  }
+}
+
 TEST(Improve, StopsWhenAsked) {
   const auto body = refined(ball_body(0.4, 0.1), 0.1);
   Context context;
