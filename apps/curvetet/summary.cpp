@@ -112,6 +112,8 @@ std::string time_line(const Report& report) {
   for (std::size_t i = 0; i < std::min<std::size_t>(stages.size(), 4); ++i) {
     text += fmt::format("{}{} {:.2f}", i == 0 ? ": " : ", ", stages[i].stage, stages[i].seconds);
   }
+  if (report.peak_bytes > 0)
+    text += fmt::format("; {:.0f} MB of memory at most", static_cast<double>(report.peak_bytes) / 1e6);
   return line("time", text);
 }
 

@@ -39,7 +39,7 @@ struct Options {
   double grading = 0.5;                ///< growth of the size per length, > 0
   bool gaps = true;                    ///< chord height at most a quarter of the local gap
   std::vector<LocalSize> local_sizes;
-  std::function<double(Point)> size_callback;
+  std::function<double(Point)> size_callback;  ///< size wanted at a point, or 0; called from several threads at a time
 
   std::string unit;  ///< of the output: "um", "mm", "cm", "m", "inch", "ft"; default: mm, or `input_unit` if given
   std::string input_unit;  ///< of BREP files and shapes in memory, which carry none; default: mm

@@ -13,7 +13,7 @@ namespace curvetet {
 struct StageTime {
   std::string stage;
   double seconds = 0;
-  std::size_t bytes = 0;  ///< of our own arrays at the end of the stage
+  std::size_t bytes = 0;  ///< of memory that the process had when the stage ended; 0: the system does not tell
 };
 
 /// A rung of the ladder for what the march leaves: the facets it was tried on, again in each round that it was, and
@@ -105,6 +105,7 @@ struct Report {
   std::vector<SuppressedReport> suppressed;  ///< edges before faces, ascending ids
   std::string options_json;
   std::vector<StageTime> stages;
+  std::size_t peak_bytes = 0;  ///< the most memory the process has had so far; 0: the system does not tell
   std::size_t points = 0, tets = 0, triangles = 0, segments = 0;
   std::size_t initial_surface_points = 0;
   int rounds = 0;  ///< of the outer loop; 0: none was needed

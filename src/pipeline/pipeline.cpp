@@ -180,6 +180,9 @@ class Run {
   void end() {
     clock_.stop();
     report_.stages = clock_.times();
+    report_.peak_bytes = peak_resident_memory();
+    // Linux keeps the two by counters that are exact to some pages only.
+    for (const StageTime& stage : report_.stages) report_.peak_bytes = std::max(report_.peak_bytes, stage.bytes);
     const bool failed = !report_.errors.empty() && !context_.cancelled();
     if (failed && !options_.dossier.empty()) leave_dossier();
   }

@@ -165,6 +165,7 @@ std::string Report::to_json() const {
   json["solids"] = list(solids, solid_json);
   json["faces"] = list(faces, face_json);
   json["stages"] = list(stages, stage_json);
+  json["peak_bytes"] = peak_bytes;
   json["warnings"] = warnings;
   json["errors"] = list(errors, error_json);
   json["mesh_hash"] = hexadecimal(mesh_hash);

@@ -1,12 +1,14 @@
-// Times of the stages, for the report; and progress, from a table of weights.
+// Times and memory of the stages, for the report; and progress, from a table of weights.
 #pragma once
 
+#include <algorithm>
 #include <chrono>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "base/context.h"
+#include "base/memory.h"
 #include "curvetet/report.h"
 
 namespace curvetet {
@@ -35,10 +37,11 @@ class StageClock {
     for (StageTime& t : times_)
       if (t.stage == stage_) {
         t.seconds += seconds;
+        t.bytes = std::max(t.bytes, resident_memory());
         stage_.clear();
         return;
       }
-    times_.push_back({stage_, seconds, 0});
+    times_.push_back({stage_, seconds, resident_memory()});
     stage_.clear();
   }
   const std::vector<StageTime>& times() const { return times_; }

@@ -21,8 +21,9 @@ namespace curvetet {
 int orient3d(Vec3 a, Vec3 b, Vec3 c, Vec3 d);
 /// Exact; see the theorem above.
 int insphere(Vec3 a, Vec3 b, Vec3 c, Vec3 d, Vec3 e);
-/// As insphere of five points a..e, ties broken by vertex id (symbolic perturbation of the lifted height by id); never zero unless the four
-/// points a..d are coplanar. The result is that of infinitesimally perturbed points: consistent over all calls.
+/// As insphere of five points a..e, ties broken by vertex id (symbolic perturbation of the lifted height by id); never
+/// zero unless the four points a..d are coplanar. The result is that of infinitesimally perturbed points: consistent
+/// over all calls.
 int insphere_perturbed(const std::array<Vec3, 5>& points, const std::array<VertexId, 5>& ids);
 
 /// The second half of insphere_perturbed: the sign that the perturbation gives to five points whose insphere is zero.

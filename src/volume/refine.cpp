@@ -3,14 +3,20 @@
 // wants it already, and a finer one is not wanted. So there is no guarantee next to the boundary, only fewer tets.
 //
 // A tet is too large if its circumradius is above kRadiusOverSize times the size at its centroid; the factor is
-// measured, so that the mean edge is about as long as the size. The worst tet goes first, by classes of the ratio
+// measured, so that the mean edge is about as long as the size. The worst tets go first, by classes of the ratio
 // rather than by an exact order: a class costs the same for any number of tets. Places for the new vertex are tried in
 // turn: a place at the wanted distance over the tet's smallest facet (off-centre; Rebay 1993, Ungor 2004), which grows
 // well-shaped tets from the boundary inwards; the circumcentre; the middle of the longest edge. Each is reached by a
 // walk that does not cross locked facets, and judged on the cavity the vertex would make before anything is changed.
 //
+// Many tets are worked on at a time, by all threads: places are found while nothing changes; cavities that are disjoint
+// and do not touch are chosen in order; their stars are made; what is bad of them is queued in order. Batches follow
+// from the mesh alone, so that it does not depend on the number of threads. A larger batch has more cavities that
+// disturb each other, and no longer fits the cache between finding and making.
+//
 // Rejected: inserting a lattice of points at once. It is faster, but leaves a badly graded seam along the boundary, and
-// graded fields are the rule.
+// graded fields are the rule. Blocks of space with a thread each, whose seams must be done again. Batches of the worst
+// tets as they were queued: most of these are neighbours.
 #include "volume/refine.h"
 
 #include <algorithm>

@@ -57,6 +57,12 @@ TEST(MeshOfAShape, IsTheMeshOfItsFile) {
   EXPECT_TRUE(of_shape.value().report.valid);
   EXPECT_EQ(of_shape.value().report.mesh_hash, of_file.value().report.mesh_hash);
   EXPECT_EQ(of_shape.value().report.input, "shape");
+  const Report& report = of_shape.value().report;
+  ASSERT_FALSE(report.stages.empty());
+  for (const StageTime& stage : report.stages) {
+    EXPECT_GT(stage.bytes, std::size_t{1} << 20U) << stage.stage;
+    EXPECT_LE(stage.bytes, report.peak_bytes) << stage.stage;
+  }
 }
 
 TEST(MeshOfAShape, KeepsNamesColoursAndUnit) {
