@@ -83,6 +83,20 @@ void TetComplex::start_flood() const {
   flood_ += 4;
 }
 
+void TetComplex::reorder(const std::vector<TetId>& order) {
+  CURVETET_CHECK(order.size() == alive());
+  std::vector<TetId> number(tets_.size());
+  for (std::size_t k = 0; k < order.size(); ++k) number[order[k].value()] = TetId(k);
+  std::vector<Tet> sorted;
+  sorted.reserve(order.size());
+  for (const TetId t : order) {
+    sorted.push_back(tets_[t.value()]);
+    for (TetId& n : sorted.back().neighbours) n = number[n.value()];
+  }
+  tets_ = std::move(sorted);
+  free_.clear();
+}
+
 void TetComplex::reserve(std::size_t tets) { tets_.reserve(tets); }
 
 std::size_t TetComplex::bytes() const {

@@ -117,6 +117,8 @@ class TetComplex {
   void start_flood() const;
 
   void reserve(std::size_t tets);
+  /// Renumbers the tets: order[k], all that are alive, becomes tet k.
+  void reorder(const std::vector<TetId>& order);
   std::size_t bytes() const;
 
  private:

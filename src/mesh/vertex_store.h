@@ -60,6 +60,16 @@ class VertexStore {
   void move(VertexId v, Vec3 position) { sites_[v.value()].position = position; }
   void set_owner(VertexId v, Owner owner) { sites_[v.value()].owner = owner; }
   const Site* sites() const { return sites_.data(); }
+  /// Renumbers the last vertices: order[k], from `first` on, becomes vertex first + k.
+  void reorder(VertexId first, const std::vector<VertexId>& order) {
+    const auto permute = [&](auto& all) {
+      auto taken = all;
+      for (std::size_t k = 0; k < order.size(); ++k) all[first.value() + k] = taken[order[k].value()];
+    };
+    permute(sites_);
+    permute(parameters_);
+    permute(origins_);
+  }
 
  private:
   std::vector<Site> sites_;

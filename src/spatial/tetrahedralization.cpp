@@ -3,6 +3,9 @@
 #include "spatial/tetrahedralization.h"
 
 #include <algorithm>
+#include <numeric>
+
+#include "base/hilbert.h"
 
 namespace curvetet {
 
@@ -88,6 +91,59 @@ void Tetrahedralization::settle(Insertion& insertion) {
   insertion.slots.resize(insertion.walls.size());
   for (const TetId t : insertion.slots) touch(t);
   last_ = insertion.slots.back();
+}
+
+void Tetrahedralization::sort_in_space(VertexStore& vertices, VertexId first) {
+  CURVETET_CHECK(&vertices == vertices_);
+  constexpr int kBits = 20;
+  const auto cell = [](double x) { return static_cast<std::uint32_t>((x + 1) * (1 << (kBits - 1))); };
+  std::vector<std::pair<std::uint64_t, VertexId>> along;
+  along.reserve(vertices.size());
+  for (std::size_t v = 0; v < vertices.size(); ++v) {
+    const Vec3 p = vertices.position(VertexId(v));
+    along.emplace_back(hilbert_index({cell(p.x), cell(p.y), cell(p.z)}, kBits), VertexId(v));
+  }
+  std::sort(along.begin(), along.end());
+
+  std::vector<VertexId> order;
+  IndexedVector<VertexId, VertexId> number;
+  IndexedVector<VertexId, std::uint32_t> rank;  // by new number
+  number.resize(vertices.size());
+  rank.resize(vertices.size());
+  for (std::size_t k = 0; k < along.size(); ++k) {
+    const VertexId v = along[k].second;
+    number[v] = v < first ? v : VertexId(first.value() + order.size());
+    rank[number[v]] = static_cast<std::uint32_t>(k);
+    if (!(v < first)) order.push_back(v);
+  }
+  vertices.reorder(first, order);
+  sort_tets(number, rank);
+}
+
+/// By the vertex of each that is first along the curve.
+void Tetrahedralization::sort_tets(const IndexedVector<VertexId, VertexId>& number,
+                                   const IndexedVector<VertexId, std::uint32_t>& rank) {
+  std::vector<std::uint32_t> place(complex_.slots());
+  std::vector<std::size_t> next(rank.size() + 1, 0);
+  for (std::size_t t = 0; t < complex_.slots(); ++t) {
+    if (!complex_.is_alive(TetId(t))) continue;
+    place[t] = static_cast<std::uint32_t>(rank.size());
+    for (VertexId& v : complex_.tets()[t].vertices) {
+      if (v == kInfinite) continue;
+      v = number[v];
+      place[t] = std::min(place[t], rank[v]);
+    }
+    ++next[place[t] + 1];
+  }
+  std::partial_sum(next.begin(), next.end(), next.begin());
+  std::vector<TetId> order(complex_.alive());
+  for (std::size_t t = 0; t < complex_.slots(); ++t)
+    if (complex_.is_alive(TetId(t))) order[next[place[t]]++] = TetId(t);
+  complex_.reorder(order);
+  cover_vertices();
+  for (std::size_t t = 0; t < complex_.slots(); ++t) touch(TetId(t));
+  star_.clear();
+  last_ = TetId();
 }
 
 Refusal Tetrahedralization::insert(VertexId vertex, TetId hint) {

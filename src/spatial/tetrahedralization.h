@@ -105,6 +105,10 @@ class Tetrahedralization {
   /// Frees what is not needed and notes a tet of each vertex: then the tetrahedralization is whole again.
   void settle(Insertion& insertion);
 
+  /// Renumbers all tets, and the vertices from `first` on, which no constraint has, along a Hilbert curve: neighbours
+  /// in space become neighbours in memory. The store must be that of the constructor.
+  void sort_in_space(VertexStore& vertices, VertexId first);
+
   // --- queries ---
   const TetComplex& complex() const { return complex_; }
   TetComplex& complex() { return complex_; }
@@ -144,6 +148,7 @@ class Tetrahedralization {
   /// The star in the order of a flood; stops at the first tet that `until` holds for, which becomes the first of `out`.
   template <class Until>
   void flood_star(VertexId v, kernel::SmallMarks& marks, std::vector<TetId>& out, const Until& until) const;
+  void sort_tets(const IndexedVector<VertexId, VertexId>& number, const IndexedVector<VertexId, std::uint32_t>& rank);
   void cover_vertices();  ///< grows the tables by vertex to the store's size
 
   const VertexStore* vertices_;

@@ -200,20 +200,22 @@ class Improvement {
 
   // --- reconnection ---
 
-  /// All of a batch are looked at as the mesh is before it; where one before has changed it, once more in its turn.
+  /// All of a batch are looked at as the mesh is before it; where one before has changed it, once more in its turn. A
+  /// batch is spread over the list, and so over the mesh, that few are near each other.
   void reconnect() {
-    for (std::size_t begin = 0; begin < bad_.size() && !should_stop(begin); begin += kBatch) {
+    const std::size_t batches = (bad_.size() + kBatch - 1) / kBatch;
+    for (std::size_t b = 0; b < batches && !should_stop(16 * b); ++b) {
       start_batch();
-      const std::size_t count = std::min(kBatch, bad_.size() - begin);
+      const std::size_t count = (bad_.size() - b + batches - 1) / batches;
       reconnections_.resize(count);
       parallel_for(context_, (count + kGrain - 1) / kGrain, [&](std::size_t block) {
         for (std::size_t k = block * kGrain; k < std::min(count, (block + 1) * kGrain); ++k)
-          reconnections_[k] = find_reconnection(bad_[begin + k]);
+          reconnections_[k] = find_reconnection(bad_[b + k * batches]);
       });
       for (std::size_t k = 0; k < count; ++k) {
-        if (reconnections_[k] && is_disturbed(reconnections_[k]->exchange))
-          reconnections_[k] = find_reconnection(bad_[begin + k]);
-        if (reconnections_[k]) commit(bad_[begin + k], *reconnections_[k]);
+        const TetId t = bad_[b + k * batches];
+        if (reconnections_[k] && is_disturbed(reconnections_[k]->exchange)) reconnections_[k] = find_reconnection(t);
+        if (reconnections_[k]) commit(t, *reconnections_[k]);
       }
     }
   }
@@ -276,16 +278,17 @@ class Improvement {
   /// in its turn.
   void smooth() {
     collect_movable();
-    for (std::size_t begin = 0; begin < movable_.size() && !should_stop(begin); begin += kBatch) {
+    const std::size_t batches = (movable_.size() + kBatch - 1) / kBatch;
+    for (std::size_t b = 0; b < batches && !should_stop(16 * b); ++b) {
       start_batch();
-      const std::size_t count = std::min(kBatch, movable_.size() - begin);
+      const std::size_t count = (movable_.size() - b + batches - 1) / batches;
       moves_.resize(std::max(count, moves_.size()));
       parallel_for(context_, (count + kGrain - 1) / kGrain, [&](std::size_t block, std::size_t worker) {
         for (std::size_t k = block * kGrain; k < std::min(count, (block + 1) * kGrain); ++k)
-          find_move(movable_[begin + k], workers_[worker], moves_[k]);
+          find_move(movable_[b + k * batches], workers_[worker], moves_[k]);
       });
       for (std::size_t k = 0; k < count; ++k) {
-        const VertexId v = movable_[begin + k];
+        const VertexId v = movable_[b + k * batches];
         if (std::any_of(moves_[k].around.begin(), moves_[k].around.end(), [this](VertexId x) { return is_changed(x); }))
           find_move(v, workers_[0], moves_[k]);
         if (!moves_[k].there) continue;

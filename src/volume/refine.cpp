@@ -161,6 +161,7 @@ class Refinement {
         field_(field),
         options_(options),
         context_(context),
+        first_(vertices.size()),
         has_local_sizes_(field.options().callback || !field.options().solid_size.empty()),
         scratch_(worker_count(context)) {}
 
@@ -177,6 +178,7 @@ class Refinement {
     }
     result_.unmet = static_cast<std::size_t>(
         std::count_if(unmet_.begin(), unmet_.end(), [this](const Entry& e) { return is_current(e); }));
+    mesh_.sort_in_space(vertices_, first_);
     return result_;
   }
 
@@ -472,6 +474,7 @@ class Refinement {
   const SizeField& field_;
   const RefineOptions& options_;
   Context& context_;
+  VertexId first_;                ///< of those inserted
   bool has_local_sizes_;          ///< that do not follow the grading
   std::vector<Scratch> scratch_;  ///< by worker
   IndexedVector<VertexId, double> vertex_size_;

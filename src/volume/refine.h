@@ -28,10 +28,10 @@ struct RefineResult {
 /// Before: every facet between two regions is locked; the store is that of the mesh.
 /// After: locked facets and kept segments are unchanged. Every new vertex is Owner::of(its SolidId), Origin::interior,
 /// on the grid, at least 0.6 times the size there (or the shortest edge of the bad tet it mends) from every vertex it
-/// sees, and outside the equatorial spheres of the locked facets it sees. The same for any number of threads. The
-/// radius-edge bound cannot be had next to coarse locked facets: such tets are counted as unmet. Ends:
-/// vertices keep a distance from each other, so finitely many fit; each tet is looked at once. An error only if the
-/// context asks to stop; the mesh is then valid.
+/// sees, and outside the equatorial spheres of the locked facets it sees. The same for any number of threads. Tets
+/// are renumbered. The radius-edge bound cannot be had next to coarse locked facets: such tets are counted as unmet.
+/// Ends: vertices keep a distance from each other, so finitely many fit; each tet is looked at once. An error only if
+/// the context asks to stop; the mesh is then valid.
 Result<RefineResult> refine_interior(Tetrahedralization& mesh, VertexStore& vertices, const SizeField& field,
                                      const RefineOptions& options, Context& context);
 

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <random>
+#include <set>
 
 #include "oracle/naive_delaunay.h"
 #include "oracle/point_sets.h"
@@ -325,6 +326,58 @@ TEST(Insert, ManyAtATime) {
   expect_valid(many);
   for (const Vec3& p : places) ASSERT_EQ(one_by_one.insert(again.add(p, {}, {}, Origin::interior)), Refusal::none);
   EXPECT_EQ(finite_tets(many), finite_tets(one_by_one));
+}
+
+/// The corners of all finite tets by their places, sorted.
+std::set<std::array<std::array<double, 3>, 4>> tets_by_place(const Tetrahedralization& mesh) {
+  std::set<std::array<std::array<double, 3>, 4>> tets;
+  for (std::size_t k = 0; k < mesh.complex().slots(); ++k) {
+    if (!mesh.complex().is_alive(TetId(k)) || mesh.complex().is_ghost(TetId(k))) continue;
+    std::array<std::array<double, 3>, 4> corners{};
+    for (int i = 0; i < 4; ++i) {
+      const Vec3 p = mesh.position(mesh.complex().vertex(TetId(k), i));
+      corners[static_cast<std::size_t>(i)] = {p.x, p.y, p.z};
+    }
+    std::sort(corners.begin(), corners.end());
+    tets.insert(corners);
+  }
+  return tets;
+}
+
+TEST(SortInSpace, ChangesNumbersOnly) {
+  const Context context;
+  VertexStore store = make_store(PointSet::cube, 3000, 1);
+  Tetrahedralization mesh(store, 1);
+  const std::vector<VertexId> ids = all_vertices(store);
+  const VertexId first(2000U);
+  ASSERT_TRUE(mesh.build(std::span(ids).first(2000), context).ok());
+  const TetId some = mesh.tet_of(VertexId(7));
+  const auto facet = mesh.complex().facet_vertices({some, 0});
+  mesh.lock({some, 0}, FaceId(3));
+  mesh.keep_segment(facet[0], facet[1]);
+  for (std::size_t k = 2000; k < ids.size(); ++k) mesh.insert(ids[k]);
+  const auto tets = tets_by_place(mesh);
+  const auto length_of_steps = [&] {
+    double sum = 0;
+    for (std::size_t v = first.value(); v + 1 < store.size(); ++v)
+      sum += distance(store.position(VertexId(v)), store.position(VertexId(v + 1)));
+    return sum;
+  };
+  const double before = length_of_steps();
+  const Vec3 fixed = store.position(VertexId(1999));
+  mesh.sort_in_space(store, first);
+  expect_valid(mesh, false);
+  EXPECT_EQ(tets_by_place(mesh), tets);
+  EXPECT_EQ(mesh.complex().alive(), mesh.complex().slots());
+  EXPECT_EQ(store.position(VertexId(1999)), fixed);
+  EXPECT_LT(length_of_steps(), 0.3 * before) << "neighbours are near";
+  const auto locked = mesh.find_facet(facet[0], facet[1], facet[2]);
+  ASSERT_TRUE(locked);
+  EXPECT_EQ(mesh.complex().locked_face(*locked), FaceId(3));
+  EXPECT_TRUE(mesh.is_kept(facet[0], facet[1]));
+  const VertexId more = store.add(oracle::to_grid({0.01, 0.02, 0.03}), {}, {}, Origin::interior);
+  EXPECT_EQ(mesh.insert(more), Refusal::none);
+  expect_valid(mesh, false);
 }
 
 }  // namespace
