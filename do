@@ -94,6 +94,10 @@ bench() {
     say "$(basename "$program")"
     "$program"
   done
+  say "Whole meshings"
+  build/bench/bench/make_bodies out/bodies
+  python3 scripts/benchmark.py --body out/bodies/bulk.brep --sizes 0.0149,0.0107 --curvetet build/bench/apps/curvetet/curvetet \
+    --out out/benchmark --page docs/benchmarks.md
 }
 
 format() { sources | xargs clang-format -i; }
@@ -106,7 +110,7 @@ help() {
 ./do build    Release build in build/release
 ./do demo     mesh the example body and draw it, into out/
 ./do test     build, all tests, format, room order, clang-tidy, all tests under the sanitizers
-./do bench    benchmarks of the kernel
+./do bench    benchmarks of the kernel, and of whole meshings beside gmsh (into docs/benchmarks.md)
 ./do format   clang-format over all sources
 ./do lint     format, room order and clang-tidy only
 ./do clean    remove build/ and out/

@@ -1,5 +1,5 @@
 // Writes the bodies of the thin-wall, kind and seam checks as BREP files: bodies on which other meshers stop, and one
-// or more of each kind of surface. Usage: make_bodies FOLDER
+// or more of each kind of surface; and one for measuring speed. Usage: make_bodies FOLDER
 #include <BRepAlgoAPI_Common.hxx>
 #include <BRepAlgoAPI_Cut.hxx>
 #include <BRepAlgoAPI_Fuse.hxx>
@@ -167,6 +167,13 @@ void coarse() {
   save("coarse_bores", bored);
 }
 
+/// For measuring speed: the surface is simple, so that most of the work is inside.
+void bulk() {
+  const TopoDS_Shape box =
+      cut(BRepPrimAPI_MakeBox(1, 1, 1).Shape(), BRepPrimAPI_MakeSphere(gp_Pnt(0.5, 0.5, 0.5), 0.3).Shape());
+  save("bulk", cut(box, BRepPrimAPI_MakeCylinder(axis(gp_Pnt(0.15, 0.15, -1)), 0.1, 3).Shape()));
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -180,5 +187,6 @@ int main(int argc, char** argv) {
   kinds();
   seams();
   coarse();
+  bulk();
   return 0;
 }

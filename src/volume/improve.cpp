@@ -3,6 +3,9 @@
 // look at each tet. Every change is judged by the worst tet of what it replaces (Freitag and Ollivier-Gooch 1997;
 // Klingner and Shewchuk 2007), but for the last one, beside needles.
 //
+// Many tets or vertices are looked at side by side, by all threads, while nothing changes; then the mesh is changed in
+// order, and what an earlier change has disturbed is looked at once more. So nothing depends on the number of threads.
+//
 // Rejected: a queue ordered by quality. Sweeps in slot order find nearly the same changes, need no bookkeeping, and
 // touch memory in order. Sliver exudation by weights was not taken either: it works with what a weighted Delaunay
 // tetrahedralization offers, reconnection with all there is. Merging a bad interior vertex into a neighbour found 13
@@ -112,7 +115,7 @@ class Improvement {
     return std::asin(std::clamp(worst, 0.0, 1.0)) / kDegree;
   }
 
-  bool should_stop(std::size_t step) {
+  bool should_stop(std::size_t step = 0) {
     if (!stopped_ && step % 16 == 0) stopped_ = context_.should_stop();
     return stopped_;
   }
@@ -204,7 +207,7 @@ class Improvement {
   /// batch is spread over the list, and so over the mesh, that few are near each other.
   void reconnect() {
     const std::size_t batches = (bad_.size() + kBatch - 1) / kBatch;
-    for (std::size_t b = 0; b < batches && !should_stop(16 * b); ++b) {
+    for (std::size_t b = 0; b < batches && !should_stop(); ++b) {
       start_batch();
       const std::size_t count = (bad_.size() - b + batches - 1) / batches;
       reconnections_.resize(count);
@@ -279,7 +282,7 @@ class Improvement {
   void smooth() {
     collect_movable();
     const std::size_t batches = (movable_.size() + kBatch - 1) / kBatch;
-    for (std::size_t b = 0; b < batches && !should_stop(16 * b); ++b) {
+    for (std::size_t b = 0; b < batches && !should_stop(); ++b) {
       start_batch();
       const std::size_t count = (movable_.size() - b + batches - 1) / batches;
       moves_.resize(std::max(count, moves_.size()));
@@ -407,7 +410,7 @@ class Improvement {
     std::sort(order.begin(), order.end());
     std::size_t changed = 0, failed = 0;
     touched_.clear();
-    for (std::size_t k = 0; k < order.size() && failed < kFailedInsertions + 2 * changed && !should_stop(256 * k);
+    for (std::size_t k = 0; k < order.size() && failed < kFailedInsertions + 2 * changed && !should_stop();
          ++k) {
       const TetId t = order[k].second;
       if (!is_inside(t) || quality(t) >= goal) continue;
