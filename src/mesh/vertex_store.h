@@ -35,7 +35,8 @@ enum class Origin : std::uint8_t {
   surrounding  ///< a corner of the cube around the body, in no solid
 };
 
-/// Positions are working coordinates on the grid (geometry/frame.h). Ids are never reused.
+/// Positions are working coordinates on the grid (geometry/frame.h). Ids are never reused; `reorder` alone changes
+/// them.
 class VertexStore {
  public:
   /// In half a cache line: cavities are grown by positions alone.
@@ -43,6 +44,7 @@ class VertexStore {
     Vec3 position;
     Owner owner;
   };
+  static_assert(sizeof(Vec3) + sizeof(Owner) == 32, "insphere_four reads four doubles of it");
 
   VertexId add(Vec3 position, Owner owner, Vec2 parameter, Origin origin) {
     sites_.push_back({position, owner});

@@ -99,7 +99,7 @@ class Tetrahedralization {
   void note_walls(Insertion& insertion) const;
   /// Takes slots for the star of the vertex, which is in the store now.
   void reserve(Insertion& insertion, VertexId vertex);
-  /// Replaces the cavity by the star, if nothing in it or beside it has changed since it was found. Each thread has a
+  /// Replaces the cavity by the star, if no tet of it or beside it has gone since it was found. Each thread has a
   /// builder of its own, which covers the store's vertices.
   void commit(Insertion& insertion, kernel::StarBuilder& builder);
   /// Frees what is not needed and notes a tet of each vertex: then the tetrahedralization is whole again.
