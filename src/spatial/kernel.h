@@ -215,9 +215,8 @@ class StarBuilder {
   std::size_t bytes() const { return numbers_.capacity() * sizeof(std::uint32_t); }
 
  private:
-  template <class NumberOf>
-  void glue_by_table(TetComplex& complex, std::span<const Wall> walls, std::span<const TetId> slots,
-                     const NumberOf& number_of);
+  /// The new tet, but for its neighbours in the star.
+  static void put_behind(const Wall& wall, TetId slot, VertexId v, TetComplex::Tet* all);
   void glue_by_sorting(TetComplex& complex, std::span<const Wall> walls, std::span<const TetId> slots);
 
   /// An edge of a wall: its vertices, the smaller first, and the facet of the new tet there.
@@ -237,36 +236,31 @@ template <class NumberOf>
 void StarBuilder::fill(TetComplex& complex, VertexId v, std::span<const Wall> walls, std::span<const TetId> slots,
                        const NumberOf& number_of) {
   TetComplex::Tet* const all = complex.tets();
-  for (std::size_t k = 0; k < walls.size(); ++k) {
-    const Wall& wall = walls[k];
-    TetComplex::Tet& tet = all[slots[k].value()];
-    tet.vertices = {wall.vertices[0], wall.vertices[1], wall.vertices[2], v};
-    tet.neighbours[3] = wall.outer;
-    tet.flags = wall.flags;
-    tet.stamp = 0;
-    all[wall.outer.value()].neighbours[static_cast<std::size_t>(wall.local)] = slots[k];
-  }
-  if (EdgeTable::fits(walls.size())) {
-    glue_by_table(complex, walls, slots, number_of);
-  } else {
+  if (!EdgeTable::fits(walls.size())) {
+    for (std::size_t k = 0; k < walls.size(); ++k) put_behind(walls[k], slots[k], v, all);
     glue_by_sorting(complex, walls, slots);
+    return;
   }
-}
-
-template <class NumberOf>
-void StarBuilder::glue_by_table(TetComplex& complex, std::span<const Wall> walls, std::span<const TetId> slots,
-                                const NumberOf& number_of) {
   table_.clear();
   for (std::size_t k = 0; k < walls.size(); ++k) {
+    put_behind(walls[k], slots[k], v, all);
     for (std::size_t j = 0; j < 3; ++j)
       wall_numbers_[k][j] = table_.number_of(walls[k].vertices[j], number_of(walls[k].vertices[j]));
     table_.enter(wall_numbers_[k], slots[k]);
   }
-  TetComplex::Tet* const all = complex.tets();
   for (std::size_t k = 0; k < walls.size(); ++k) {
     const std::array<TetId, 3> neighbours = table_.neighbours(wall_numbers_[k]);
     for (std::size_t j = 0; j < 3; ++j) all[slots[k].value()].neighbours[j] = neighbours[j];
   }
+}
+
+inline void StarBuilder::put_behind(const Wall& wall, TetId slot, VertexId v, TetComplex::Tet* all) {
+  TetComplex::Tet& tet = all[slot.value()];
+  tet.vertices = {wall.vertices[0], wall.vertices[1], wall.vertices[2], v};
+  tet.neighbours[3] = wall.outer;
+  tet.flags = wall.flags;
+  tet.stamp = 0;
+  all[wall.outer.value()].neighbours[static_cast<std::size_t>(wall.local)] = slot;
 }
 
 }  // namespace curvetet::kernel
