@@ -410,8 +410,7 @@ class Improvement {
     std::sort(order.begin(), order.end());
     std::size_t changed = 0, failed = 0;
     touched_.clear();
-    for (std::size_t k = 0; k < order.size() && failed < kFailedInsertions + 2 * changed && !should_stop();
-         ++k) {
+    for (std::size_t k = 0; k < order.size() && failed < kFailedInsertions + 2 * changed && !should_stop(); ++k) {
       const TetId t = order[k].second;
       if (!is_inside(t) || quality(t) >= goal) continue;
       if (!insertion_.mend(t, quality(t) + kInsertionGain)) {
