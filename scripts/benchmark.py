@@ -52,8 +52,11 @@ class Benchmark:
         self.a = arguments
 
     def own(self, size, threads):
-        return [self.a.curvetet, "mesh", self.a.body, "-o", self.a.out / "own.msh", "-q", "--threads", threads, "--size", repr(size),
-                "--curvature", 0, "--report", self.a.out / "own.json"]
+        return [self.a.curvetet, "mesh", self.a.body, "-o", self.a.out / f"own{threads}.msh", "-q", "--threads", threads, "--size",
+                repr(size), "--curvature", 0, "--report", self.report(threads)]
+
+    def report(self, threads):
+        return self.a.out / f"own{threads}.json"
 
     def gmsh(self, size, algorithm):
         return [*gmsh_command(self.a.body, repr(size), self.a.out / f"gmsh{algorithm}.msh", 0, algorithm), "-bin"]
@@ -61,13 +64,15 @@ class Benchmark:
     def quality(self, mesh):
         _, out, _, _ = run([self.a.curvetet, "check", "--json", mesh], None, 0)
         found = read_json(out)
+        if not found or not found["counts"]["tets"]:
+            sys.exit(f"{mesh} has no tets")
         return found["counts"]["tets"], found["quality"]["mean_radius_ratio"], found["quality"]["worst_dihedral"]
 
     def matching_size(self, size, wanted):
         """At which curvetet makes `wanted` tets, within two hundredths."""
         for _ in range(ROUNDS):
             measure(self.own(size, 1))
-            tets = read_json(self.a.out / "own.json")["counts"]["tets"]
+            tets = read_json(self.report(1))["counts"]["tets"]
             if abs(tets / wanted - 1) <= CLOSE:
                 return size
             size *= (tets / wanted) ** (1 / 3)
@@ -79,14 +84,14 @@ class Benchmark:
             commands = {"gmsh, HXT": self.gmsh(size, 10), "gmsh, Delaunay": self.gmsh(size, 1)}
             measure(commands["gmsh, HXT"])
             size = self.matching_size(size, self.quality(self.a.out / "gmsh10.msh")[0])
-        commands["curvetet"] = self.own(size, 1)
-        commands[f"curvetet, {os.cpu_count()} threads"] = self.own(size, 0)
+        own = {"curvetet": 1, f"curvetet, {os.cpu_count()} threads": os.cpu_count()}
+        commands.update((name, self.own(size, threads)) for name, threads in own.items())
         measured, stages = {name: [] for name in commands}, {name: [] for name in commands}
         for _ in range(self.a.runs):
             for name, command in commands.items():
                 measured[name].append(measure(command))
-                if name.startswith("curvetet"):
-                    stages[name].append({s["stage"]: s["seconds"] for s in read_json(self.a.out / "own.json")["stages"]})
+                if name in own:
+                    stages[name].append({s["stage"]: s["seconds"] for s in read_json(self.report(own[name]))["stages"]})
         base = statistics.median(seconds for seconds, _ in measured["curvetet"])
         for name, command in commands.items():
             seconds, memory = (statistics.median(run[i] for run in measured[name]) for i in (0, 1))

@@ -5,6 +5,8 @@
 #include <cstddef>
 #include <cstdint>
 
+#include "base/vec.h"
+
 namespace curvetet {
 
 /// How one level of the curve runs: by state, which is the corner where the curve enters (three bits) and 8 times the
@@ -42,6 +44,13 @@ inline std::uint64_t hilbert_index(const std::array<std::uint32_t, 3>& cell, int
     state = step >> 3;
   }
   return index;
+}
+
+/// Index of the cell of a point whose coordinates lie between -1 and 1, in 2^20 cells a side.
+inline std::uint64_t hilbert_index(Vec3 p) {
+  constexpr int kBits = 20;
+  const auto cell = [](double x) { return static_cast<std::uint32_t>((x + 1) * (1 << (kBits - 1))); };
+  return hilbert_index({cell(p.x), cell(p.y), cell(p.z)}, kBits);
 }
 
 }  // namespace curvetet

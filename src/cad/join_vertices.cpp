@@ -115,14 +115,16 @@ class Joiner {
     return true;
   }
 
-  /// Where a solid touches itself its edges pair up only if their ends are the same (see touching_edges.h).
+  /// Where a solid touches itself its edges pair up only if their ends are the same (see touching_edges.h). Candidates
+  /// are near each other along a slanted line, across which no plane of a usual body lies.
   void join_in_place(const TopoDS_Shape& solid) {
-    std::vector<std::pair<double, int>> along;  // the first coordinate
+    std::vector<std::pair<double, int>> along;
+    const gp_XYZ slanted = gp_XYZ(0.36, 0.48, 0.8);
     const TopTools_IndexedMapOfShape own = sub_shapes(solid, TopAbs_VERTEX);
     along.reserve(static_cast<std::size_t>(own.Extent()));
     for (int v = 1; v <= own.Extent(); ++v) {
       const int number = vertices_.FindIndex(own(v));
-      along.emplace_back(place(number).X(), number);
+      along.emplace_back(place(number).XYZ() * slanted, number);
     }
     std::sort(along.begin(), along.end());
     const double near = kOnePlace * diagonal_;

@@ -75,9 +75,9 @@ void TetComplex::set_mark(TetId t, int which, bool on) {
   flags = on ? (flags | bit) : (flags & ~bit);
 }
 
-void TetComplex::start_flood() const {
+void TetComplex::start_flood() {
   if (flood_ > 0xFFFFFFF0U) {
-    for (const Tet& tet : tets_) tet.stamp = 0;
+    for (Tet& tet : tets_) tet.stamp = 0;
     flood_ = 0;
   }
   flood_ += 4;

@@ -41,7 +41,7 @@ class TetComplex {
     Vertices vertices;
     std::array<TetId, 4> neighbours;
     std::uint32_t flags = 0;
-    mutable std::uint32_t stamp = 0;  ///< flood and state
+    std::uint32_t stamp = 0;  ///< flood and state
   };
   /// For loops that read or write all of a tet; until the next tet is added.
   Tet* tets() { return tets_.data(); }
@@ -113,8 +113,8 @@ class TetComplex {
   bool mark(TetId t, int which) const { return (tets_[t.value()].flags >> (4 + which)) & 1U; }
   void set_mark(TetId t, int which, bool on);
 
-  /// The states of all tets become 0. One flood at a time; scratch, not part of the value, hence const.
-  void start_flood() const;
+  /// The states of all tets become 0. One flood at a time.
+  void start_flood();
 
   void reserve(std::size_t tets);
   /// Renumbers the tets: order[k], all that are alive, becomes tet k.
@@ -129,7 +129,7 @@ class TetComplex {
   FacetKey key(TetFacet f) const;
 
   std::vector<Tet> tets_;
-  mutable std::uint32_t flood_ = 0;
+  std::uint32_t flood_ = 0;
   std::vector<std::uint32_t> free_;
   std::unordered_map<FacetKey, FaceId, FacetHash> locks_;  // looked up, never iterated
 };

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <bit>
-#include <numeric>
 #include <set>
 
 #include "base/fnv.h"
@@ -41,19 +40,12 @@ class Assembly {
         for (VertexId v : complex.vertices(TetId(t))) used[v.value()] = 1;
     std::vector<std::pair<std::uint64_t, VertexId>> order;
     for (std::size_t v = 0; v < used.size(); ++v)
-      if (used[v] != 0) order.emplace_back(place_on_curve(conjoint_.vertices().position(VertexId(v))), VertexId(v));
+      if (used[v] != 0) order.emplace_back(hilbert_index(conjoint_.vertices().position(VertexId(v))), VertexId(v));
     std::sort(order.begin(), order.end());
     for (const auto& [place, v] : order) {
       number_[v.value()] = static_cast<std::uint32_t>(mesh_.points.size());
       add_point(v);
     }
-  }
-
-  /// Of a point in working coordinates, which lie between -1 and 1.
-  static std::uint64_t place_on_curve(Vec3 p) {
-    constexpr int kBits = 20;
-    const auto cell = [](double x) { return static_cast<std::uint32_t>((x + 1) * (1 << (kBits - 1))); };
-    return hilbert_index({cell(p.x), cell(p.y), cell(p.z)}, kBits);
   }
 
   bool is_inside(TetId t) const {
@@ -73,25 +65,14 @@ class Assembly {
     mesh_.nodes.push_back(node);
   }
 
-  /// In the order of their smallest vertices.
+  /// Refinement has put them in order along the curve, too.
   void add_tets() {
     const TetComplex& complex = conjoint_.tets()->complex();
-    const auto smallest = [&](std::size_t t) {
-      const auto& v = complex.vertices(TetId(t));
-      return std::min({number(v[0]), number(v[1]), number(v[2]), number(v[3])});
-    };
-    std::vector<std::size_t> next(mesh_.points.size() + 1, 0);
-    for (std::size_t t = 0; t < complex.slots(); ++t)
-      if (is_inside(TetId(t))) ++next[smallest(t) + 1];
-    std::partial_sum(next.begin(), next.end(), next.begin());
-    mesh_.tets.resize(next.back());
-    mesh_.tet_solid.resize(next.back());
     for (std::size_t t = 0; t < complex.slots(); ++t) {
       if (!is_inside(TetId(t))) continue;
-      const std::size_t place = next[smallest(t)]++;
       const auto& v = complex.vertices(TetId(t));
-      mesh_.tets[place] = {number(v[0]), number(v[1]), number(v[2]), number(v[3])};
-      mesh_.tet_solid[place] = complex.region(TetId(t)) - 1;
+      mesh_.tets.push_back({number(v[0]), number(v[1]), number(v[2]), number(v[3])});
+      mesh_.tet_solid.push_back(complex.region(TetId(t)) - 1);
     }
   }
 

@@ -11,7 +11,7 @@ namespace curvetet {
 inline constexpr std::uint32_t kNoNode = 0xFFFFFFFF;
 
 /// Tets with a region, the triangles of every T_Γ, the segments of every curve mesh. Points are in order along a
-/// Hilbert curve, tets by their smallest point, the rest by id; so the same bytes each time.
+/// Hilbert curve, tets as the tetrahedralization has them, the rest by id; so the same bytes each time.
 Mesh assemble(const Conjoint& conjoint, const Settings& settings);
 
 /// The body's entities with their labels; faces still without their boundary, all without boxes.

@@ -9,6 +9,7 @@
 
 #include <algorithm>
 
+#include "base/gather.h"
 #include "mesh/tet_complex.h"
 #include "quality/box_tree.h"
 #include "quality/checks.h"
@@ -143,24 +144,20 @@ void check_overlap(const Mesh& mesh, const Topology& topology, Context& context,
   for (std::uint32_t v = 0; v < mesh.points.size(); ++v)
     if (topology.used[v] != 0) used.push_back({mesh.points[v], v});
   const PointTree tree(std::move(used));
-  std::vector<std::vector<std::pair<std::size_t, std::uint32_t>>> inside((mesh.tets.size() + kBlock - 1) / kBlock);
-  in_blocks(context, mesh.tets.size(), [&](std::size_t begin, std::size_t end) {
-    for (std::size_t t = begin; t < end && !context.should_stop(); ++t) {
-      if (topology.tet_sign[t] == 0) continue;
-      const auto& tet = mesh.tets[t];
-      tree.within(box_around(mesh, tet), [&](const PointTree::Item& item) {
-        if (std::find(tet.begin(), tet.end(), item.id) != tet.end()) return;
-        if (inside_or_on(mesh, t, topology.tet_sign[t], vec(item.point)))
-          inside[begin / kBlock].emplace_back(t, item.id);
+  using Overlap = std::pair<std::size_t, std::uint32_t>;  // a tet and a vertex in it
+  const auto found =
+      gather<Overlap>(context, mesh.tets.size(), kBlock, [&](std::size_t t, std::vector<Overlap>& inside) {
+        if (topology.tet_sign[t] == 0 || context.should_stop()) return;
+        const auto& tet = mesh.tets[t];
+        tree.within(box_around(mesh, tet), [&](const PointTree::Item& item) {
+          if (std::find(tet.begin(), tet.end(), item.id) != tet.end()) return;
+          if (inside_or_on(mesh, t, topology.tet_sign[t], vec(item.point))) inside.emplace_back(t, item.id);
+        });
       });
-    }
-  });
-  for (const auto& block : inside) {
-    for (const auto& [t, v] : block) {
-      findings.add("vertex_in_foreign_tet", Severity::error, [&, t = t, v = v] {
-        return fmt::format("node {} in tet {} at {}", v, t, place(vec(mesh.points[v])));
-      });
-    }
+  for (const auto& [t, v] : found) {
+    findings.add("vertex_in_foreign_tet", Severity::error, [&, t = t, v = v] {
+      return fmt::format("node {} in tet {} at {}", v, t, place(vec(mesh.points[v])));
+    });
   }
 }
 

@@ -1,6 +1,6 @@
 // Halves at the median along the longest side of the points' box, so that the shape of the tree follows from the number
 // of items alone and a node is no more than a plane. A BoxTree over the points was rejected: it compares six numbers
-// where one decides, and searching it took a third of a whole run on a mesh of a million tets.
+// where one decides, and searching it took a sixth of a whole run on a mesh of a million tets.
 #include "quality/point_tree.h"
 
 #include <algorithm>

@@ -26,7 +26,7 @@ class PointTree {
   /// Deterministic, whatever the order of the items. O(n log n).
   explicit PointTree(std::vector<Item> items);
 
-  /// visit(item) for each item in the box, in the tree's fixed order. O(log n + found) on boxes that are not flat.
+  /// visit(item) for each item in the box, in the tree's fixed order. At worst, on flat boxes, O(n^(2/3) + found).
   template <class Visit>
   void within(const Box& box, Visit&& visit) const;
 

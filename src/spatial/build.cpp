@@ -196,7 +196,7 @@ class Builder {
       const unsigned conflicts = conflicts_around(tet, p, tie_id);
       for (std::size_t i = 0; i < 4; ++i) {
         const TetId id = tet.neighbours[i];
-        const TetComplex::Tet& next = all[id.value()];
+        TetComplex::Tet& next = all[id.value()];
         if (next.stamp == inside) continue;
         if ((conflicts >> i & 1U) != 0) {
           next.stamp = inside;

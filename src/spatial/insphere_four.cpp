@@ -5,6 +5,7 @@
 #include "spatial/insphere_four.h"
 
 #include <cmath>
+#include <cstddef>
 #include <cstring>
 
 #ifdef __x86_64__
@@ -27,7 +28,7 @@ struct Points {
 
 [[gnu::always_inline]] inline Four row(const void* sites, VertexId v) {
   Four out;
-  std::memcpy(&out, static_cast<const Site*>(sites) + v.value(), sizeof(Four));
+  std::memcpy(&out, static_cast<const std::byte*>(sites) + sizeof(Four) * v.value(), sizeof(Four));
   return out;
 }
 

@@ -27,6 +27,7 @@ class SmallMarks {
     entry = {id, epoch_ << 2U | state};
     if (fresh && 2 * ++count_ > entries_.size()) grow();
   }
+  std::size_t bytes() const { return entries_.capacity() * sizeof(Entry); }
 
  private:
   struct Entry {

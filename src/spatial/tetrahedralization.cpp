@@ -95,14 +95,10 @@ void Tetrahedralization::settle(Insertion& insertion) {
 
 void Tetrahedralization::sort_in_space(VertexStore& vertices, VertexId first) {
   CURVETET_CHECK(&vertices == vertices_);
-  constexpr int kBits = 20;
-  const auto cell = [](double x) { return static_cast<std::uint32_t>((x + 1) * (1 << (kBits - 1))); };
   std::vector<std::pair<std::uint64_t, VertexId>> along;
   along.reserve(vertices.size());
-  for (std::size_t v = 0; v < vertices.size(); ++v) {
-    const Vec3 p = vertices.position(VertexId(v));
-    along.emplace_back(hilbert_index({cell(p.x), cell(p.y), cell(p.z)}, kBits), VertexId(v));
-  }
+  for (std::size_t v = 0; v < vertices.size(); ++v)
+    along.emplace_back(hilbert_index(vertices.position(VertexId(v))), VertexId(v));
   std::sort(along.begin(), along.end());
 
   std::vector<VertexId> order;
@@ -253,7 +249,7 @@ std::size_t Tetrahedralization::bytes() const {
   const std::size_t kept_node = sizeof(std::uint64_t) + sizeof(void*);
   return complex_.bytes() + vertex_tet_.raw().capacity() * sizeof(TetId) +
          kept_degree_.raw().capacity() * sizeof(std::uint32_t) + kept_.size() * kept_node +
-         kept_.bucket_count() * sizeof(void*) + star_.capacity() * sizeof(TetId) + scratch_.boundary_vertices.bytes() +
+         kept_.bucket_count() * sizeof(void*) + star_.capacity() * sizeof(TetId) + scratch_.bytes() +
          star_builder_.bytes();
 }
 

@@ -59,6 +59,7 @@ struct CavityScratch {
   kernel::SmallMarks marks;
   kernel::VertexSet boundary_vertices;
   std::vector<TetId> queue;
+  std::size_t bytes() const { return marks.bytes() + boundary_vertices.bytes() + queue.capacity() * sizeof(TetId); }
 };
 
 /// One of many insertions at a time: found, then reserved, then committed, then settled.

@@ -19,6 +19,7 @@
 #include <optional>
 #include <vector>
 
+#include "base/gather.h"
 #include "geometry/frame.h"
 #include "predicates/predicates.h"
 #include "quality/measures.h"
@@ -115,8 +116,8 @@ class Improvement {
     return std::asin(std::clamp(worst, 0.0, 1.0)) / kDegree;
   }
 
-  bool should_stop(std::size_t step = 0) {
-    if (!stopped_ && step % 16 == 0) stopped_ = context_.should_stop();
+  bool should_stop() {
+    stopped_ = stopped_ || context_.should_stop();
     return stopped_;
   }
 
@@ -138,20 +139,15 @@ class Improvement {
 
   /// Of all tets, those below the goal. From here on only what is near a change has to be looked at.
   void collect_below() {
-    collect_in_order(below_, [this](TetId t) { return quality(t) < goal_; });
+    below_ = all_inside([this](TetId t) { return quality(t) < goal_; });
   }
 
   /// The tets inside that are asked for, ascending.
   template <class Asked>
-  void collect_in_order(std::vector<TetId>& out, const Asked& asked) const {
-    constexpr std::size_t kBlock = 8192;
-    std::vector<std::vector<TetId>> found((complex_.slots() + kBlock - 1) / kBlock);
-    parallel_for(context_, found.size(), [&](std::size_t block) {
-      const std::size_t end = std::min(complex_.slots(), (block + 1) * kBlock);
-      for (std::size_t k = block * kBlock; k < end; ++k)
-        if (is_inside(TetId(k)) && asked(TetId(k))) found[block].push_back(TetId(k));
+  std::vector<TetId> all_inside(const Asked& asked) const {
+    return gather<TetId>(context_, complex_.slots(), 8192, [&](std::size_t k, std::vector<TetId>& out) {
+      if (is_inside(TetId(k)) && asked(TetId(k))) out.push_back(TetId(k));
     });
-    for (const auto& block : found) out.insert(out.end(), block.begin(), block.end());
   }
 
   void tidy_below() {
@@ -195,32 +191,45 @@ class Improvement {
   void collect_bad_with_touched() {
     is_touched_.assign(vertices_.size(), 0);
     for (const VertexId v : touched_) is_touched_[v] = 1;
-    collect_in_order(bad_, [this](TetId t) {
+    bad_ = all_inside([this](TetId t) {
       const auto& v = complex_.vertices(t);
       return (is_touched_[v[0]] | is_touched_[v[1]] | is_touched_[v[2]] | is_touched_[v[3]]) != 0 && quality(t) < goal_;
     });
   }
 
+  // --- batches ---
+
+  /// look(item, k, worker) for item k of a batch, side by side, while nothing changes; then change(item, k) in order. A
+  /// batch is spread over the list, and so over the mesh, that few are near each other.
+  template <class Item, class Look, class Change>
+  void in_batches(const std::vector<Item>& items, const Look& look, const Change& change) {
+    const std::size_t batches = (items.size() + kBatch - 1) / kBatch;
+    for (std::size_t b = 0; b < batches && !should_stop(); ++b) {
+      ++batch_number_;
+      changed_.resize(vertices_.size(), 0);
+      const std::size_t count = (items.size() - b + batches - 1) / batches;
+      parallel_for(context_, (count + kGrain - 1) / kGrain, [&](std::size_t block, std::size_t worker) {
+        for (std::size_t k = block * kGrain; k < std::min(count, (block + 1) * kGrain); ++k)
+          look(items[b + k * batches], k, workers_[worker]);
+      });
+      for (std::size_t k = 0; k < count; ++k) change(items[b + k * batches], k);
+    }
+  }
+
+  bool is_changed(VertexId v) const { return changed_[v] == batch_number_; }
+
   // --- reconnection ---
 
-  /// All of a batch are looked at as the mesh is before it; where one before has changed it, once more in its turn. A
-  /// batch is spread over the list, and so over the mesh, that few are near each other.
+  /// Where one before has changed what it would exchange, a tet is looked at once more in its turn.
   void reconnect() {
-    const std::size_t batches = (bad_.size() + kBatch - 1) / kBatch;
-    for (std::size_t b = 0; b < batches && !should_stop(); ++b) {
-      start_batch();
-      const std::size_t count = (bad_.size() - b + batches - 1) / batches;
-      reconnections_.resize(count);
-      parallel_for(context_, (count + kGrain - 1) / kGrain, [&](std::size_t block) {
-        for (std::size_t k = block * kGrain; k < std::min(count, (block + 1) * kGrain); ++k)
-          reconnections_[k] = find_reconnection(bad_[b + k * batches]);
-      });
-      for (std::size_t k = 0; k < count; ++k) {
-        const TetId t = bad_[b + k * batches];
-        if (reconnections_[k] && is_disturbed(reconnections_[k]->exchange)) reconnections_[k] = find_reconnection(t);
-        if (reconnections_[k]) commit(t, *reconnections_[k]);
-      }
-    }
+    reconnections_.resize(kBatch);
+    in_batches(
+        bad_, [&](TetId t, std::size_t k, Worker&) { reconnections_[k] = find_reconnection(t); },
+        [&](TetId t, std::size_t k) {
+          std::optional<Reconnection>& found = reconnections_[k];
+          if (found && is_disturbed(found->exchange)) found = find_reconnection(t);
+          if (found) commit(t, *found);
+        });
   }
 
   std::optional<Reconnection> find_reconnection(TetId t) const {
@@ -235,12 +244,6 @@ class Improvement {
         return Reconnection{found->exchange, &ImproveResult::face_removals};
     return std::nullopt;
   }
-
-  void start_batch() {
-    ++batch_number_;
-    changed_.resize(vertices_.size(), 0);
-  }
-  bool is_changed(VertexId v) const { return changed_[v] == batch_number_; }
 
   /// Whether a change of this batch is at one of the tets that would go.
   bool is_disturbed(const flips::Exchange& exchange) const {
@@ -277,30 +280,22 @@ class Improvement {
     movable_.erase(std::unique(movable_.begin(), movable_.end()), movable_.end());
   }
 
-  /// Each vertex of a batch looks for its best place as the mesh is before it; where a neighbour has moved, once more
-  /// in its turn.
+  /// Where a neighbour has moved, a vertex looks for its best place once more in its turn.
   void smooth() {
     collect_movable();
-    const std::size_t batches = (movable_.size() + kBatch - 1) / kBatch;
-    for (std::size_t b = 0; b < batches && !should_stop(); ++b) {
-      start_batch();
-      const std::size_t count = (movable_.size() - b + batches - 1) / batches;
-      moves_.resize(std::max(count, moves_.size()));
-      parallel_for(context_, (count + kGrain - 1) / kGrain, [&](std::size_t block, std::size_t worker) {
-        for (std::size_t k = block * kGrain; k < std::min(count, (block + 1) * kGrain); ++k)
-          find_move(movable_[b + k * batches], workers_[worker], moves_[k]);
-      });
-      for (std::size_t k = 0; k < count; ++k) {
-        const VertexId v = movable_[b + k * batches];
-        if (std::any_of(moves_[k].around.begin(), moves_[k].around.end(), [this](VertexId x) { return is_changed(x); }))
-          find_move(v, workers_[0], moves_[k]);
-        if (!moves_[k].there) continue;
-        vertices_.move(v, *moves_[k].there);
-        changed_[v] = batch_number_;
-        touched_.push_back(v);
-        ++result_.moves;
-      }
-    }
+    moves_.resize(kBatch);
+    in_batches(
+        movable_, [&](VertexId v, std::size_t k, Worker& worker) { find_move(v, worker, moves_[k]); },
+        [&](VertexId v, std::size_t k) {
+          Move& found = moves_[k];
+          if (std::any_of(found.around.begin(), found.around.end(), [this](VertexId x) { return is_changed(x); }))
+            find_move(v, workers_[0], found);
+          if (!found.there) return;
+          vertices_.move(v, *found.there);
+          changed_[v] = batch_number_;
+          touched_.push_back(v);
+          ++result_.moves;
+        });
   }
 
   /// The facets that an interior vertex sees; false if one of its own is locked.
@@ -345,7 +340,7 @@ class Improvement {
       collect_bad(std::sin(kNeedleGoal * kDegree));
       collect_movable();
       touched_.clear();
-      for (std::size_t k = 0; k < movable_.size() && !should_stop(k); ++k)
+      for (std::size_t k = 0; k < movable_.size() && !should_stop(); ++k)
         if (smooth_beside_needles(movable_[k])) touched_.push_back(movable_[k]);
       if (touched_.empty()) return;
       refresh_below();

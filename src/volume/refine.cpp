@@ -11,8 +11,8 @@
 //
 // Many tets are worked on at a time, by all threads: places are found while nothing changes; cavities that are disjoint
 // and do not touch are chosen in order; their stars are made; what is bad of them is queued in order. Batches follow
-// from the mesh alone, so that it does not depend on the number of threads. A larger batch has more cavities that
-// disturb each other, and no longer fits the cache between finding and making.
+// from the mesh alone, so that it does not depend on the number of threads. In a larger batch more cavities disturb
+// each other, and to make the stars takes longer.
 //
 // Rejected: inserting a lattice of points at once. It is faster, but leaves a badly graded seam along the boundary, and
 // graded fields are the rule. Blocks of space with a thread each, whose seams must be done again. Batches of the worst
@@ -25,6 +25,7 @@
 #include <optional>
 #include <vector>
 
+#include "base/gather.h"
 #include "geometry/frame.h"
 #include "predicates/predicates.h"
 #include "quality/measures.h"
@@ -95,18 +96,18 @@ class BadTets {
     top_ = std::max<std::size_t>(top_, entry.badness);
   }
 
-  /// About `number` entries of the worst class that came far apart, so that they are likely to lie far apart: one of
-  /// every stretch of it, and the next call one further. None: all have been taken.
+  /// About `number` entries of the worst classes that came far apart, so that they are likely to lie far apart: one of
+  /// every stretch, and the next call one further. False: all have been taken.
   bool take(std::size_t number, std::vector<Entry>& out) {
     out.clear();
-    if (column_ == stretch_ && !open_class(number)) return false;
+    if (column_ == stretch_ && !open_classes(number)) return false;
     for (std::size_t k = column_; k < open_.size(); k += stretch_) out.push_back(open_[k]);
     ++column_;
     return true;
   }
 
  private:
-  bool open_class(std::size_t number) {
+  bool open_classes(std::size_t number) {
     open_.clear();
     while (open_.size() < number) {
       open_.insert(open_.end(), classes_[top_].begin(), classes_[top_].end());
@@ -122,15 +123,14 @@ class BadTets {
 
   std::array<std::vector<Entry>, kClasses> classes_;
   std::size_t top_ = 0;
-  std::vector<Entry> open_;  ///< of the class that is being taken
+  std::vector<Entry> open_;  ///< of the classes that are being taken
   std::size_t stretch_ = 0, column_ = 0;
 };
 
 /// What is wrong with a tet, and what its mending needs.
 struct Judgement {
-  double badness = 0;  ///< above 1: to be refined
-  Vec3 centre;         ///< circumcentre
-  double radius = 0;
+  double badness = 0;         ///< above 1: to be refined
+  Vec3 centre;                ///< circumcentre
   double least_distance = 0;  ///< of a new vertex to old ones, where that is smaller than what the size demands
 };
 
@@ -262,16 +262,16 @@ class Refinement {
     const auto p = points(t);
     Judgement j;
     j.centre = circumcentre(p[0], p[1], p[2], p[3]);
-    j.radius = finite(j.centre) ? distance(j.centre, p[0]) : 1e9;
+    const double radius = finite(j.centre) ? distance(j.centre, p[0]) : 1e9;
     double shortest = std::numeric_limits<double>::infinity();
     for (const auto& [a, b] : kEdge) {
       shortest = std::min(shortest, norm2(p[static_cast<std::size_t>(a)] - p[static_cast<std::size_t>(b)]));
     }
     shortest = std::sqrt(shortest);
-    const double shape = j.radius / (options_.radius_edge * shortest);
+    const double shape = radius / (options_.radius_edge * shortest);
     // Over the largest that the size field allows.
     const double too_large =
-        j.radius / (kRadiusOverSize * size_at(0.25 * (p[0] + p[1] + p[2] + p[3]), complex_.region(t)));
+        radius / (kRadiusOverSize * size_at(0.25 * (p[0] + p[1] + p[2] + p[3]), complex_.region(t)));
     j.badness = std::max(shape, too_large);
     j.least_distance = too_large > 1 ? std::numeric_limits<double>::infinity() : shortest;
     return j;
@@ -286,14 +286,11 @@ class Refinement {
   }
 
   void queue_all() {
-    constexpr std::size_t kBlock = 1024;
-    std::vector<std::vector<Entry>> bad((complex_.slots() + kBlock - 1) / kBlock);
-    in_parallel(complex_.slots(), kBlock, [&](std::size_t k, Scratch&) {
+    const auto bad = gather<Entry>(context_, complex_.slots(), 1024, [&](std::size_t k, std::vector<Entry>& out) {
       const TetId t(k);
-      if (complex_.is_alive(t) && complex_.region(t) != 0 && !complex_.is_ghost(t)) note_if_bad(t, bad[k / kBlock]);
+      if (complex_.is_alive(t) && complex_.region(t) != 0 && !complex_.is_ghost(t)) note_if_bad(t, out);
     });
-    for (const auto& block : bad)
-      for (const Entry& e : block) bad_.push(e);
+    for (const Entry& e : bad) bad_.push(e);
   }
 
   // --- places for vertices: nothing is changed ---
