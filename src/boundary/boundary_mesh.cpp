@@ -26,7 +26,7 @@ std::vector<std::size_t> by_area(const Model& model) {
 }
 
 Status refine_faces(const Model& model, const SizeField& sizes, VertexStore& vertices, BoundaryMesh& mesh,
-                    const IndexedVector<FaceId, FaceInput>& inputs, Context& context) {
+                    Context& context) {
   const std::vector<std::size_t> order = by_area(model);
   std::vector<std::vector<AddedVertex>> added(order.size());
   parallel_for(context, order.size(), [&](std::size_t i) {
@@ -44,8 +44,7 @@ Status refine_faces(const Model& model, const SizeField& sizes, VertexStore& ver
   parallel_for(context, order.size(), [&](std::size_t i) {
     const std::size_t f = order[i];
     if (added[f].empty()) return;
-    FaceMesh& face = mesh.faces[FaceId(f)];
-    face = with_vertices(face, inputs[FaceId(f)], [&](VertexId v) {
+    mesh.faces[FaceId(f)].rename([&](VertexId v) {
       return v.value() < kLocalVertices ? v : VertexId(v.value() - kLocalVertices + first[f].value());
     });
   });
@@ -59,13 +58,11 @@ Result<BoundaryResult> mesh_boundary(const Model& model, const SizeField& sizes,
   BoundaryResult result;
   BoundaryMesh& mesh = result.mesh;
   if (const Status status = mesh_curves(model, sizes, vertices, mesh, context); !status) return status.error();
-  IndexedVector<FaceId, FaceInput> inputs;
-  if (const Status status = build_face_meshes(model, options, vertices, mesh, inputs, result.failures, context);
-      !status) {
+  if (const Status status = build_face_meshes(model, options, vertices, mesh, result.failures, context); !status) {
     return status.error();
   }
   if (options.refine_faces) {
-    if (const Status status = refine_faces(model, sizes, vertices, mesh, inputs, context); !status) {
+    if (const Status status = refine_faces(model, sizes, vertices, mesh, context); !status) {
       return status.error();
     }
   }

@@ -49,31 +49,26 @@ double cotangent(Vec3 apex, Vec3 a, Vec3 b) {
   return cosine < 0 ? -std::numeric_limits<double>::infinity() : std::numeric_limits<double>::infinity();
 }
 
-/// So flat, in space or in the chart, that its angles are rounding errors: the middle of a chart edge, rounded to the
-/// grid, is not on the edge.
-bool flat(const Corner& a, const Corner& b, const Corner& c) {
-  if (degenerate(a, b, c)) return false;
-  const Vec3 u = b.position - a.position, v = c.position - a.position;
-  const double longest = std::max({norm2(u), norm2(v), norm2(v - u)});
-  if (norm2(cross(u, v)) <= kFlat * kFlat * longest * longest) return true;
-  const Vec2 r = b.q - a.q, s = c.q - a.q;
-  return std::abs(cross(r, s)) <= kFlat * std::max({norm2(r), norm2(s), norm2(s - r)});
-}
-
-/// Upright on the surface.
-bool upright(const Corner& a, const Corner& b, const Corner& c, const ChartSurface& on) {
-  return !degenerate(a, b, c) && alignment(a, b, c, on) < kUpright;
-}
-
 /// Normals at the corners that disagree: there is a bend within the triangle, which need not be where a corner is.
 bool disagree(Vec3 a, Vec3 b, Vec3 c) {
   return std::min({dot(a, b), dot(b, c), dot(c, a)}) < kAgree && norm2(a) > 0 && norm2(b) > 0 && norm2(c) > 0;
+}
+
+/// The surface's normal over a triangle, of any length: by its corners or, where these disagree, by its mean.
+Vec3 surface_normal(const Corner& a, const Corner& b, const Corner& c, const ChartSurface& on) {
+  return disagree(a.normal, b.normal, c.normal) ? mean_normal(on, a.q, b.q, c.q) : a.normal + b.normal + c.normal;
 }
 
 /// Of the angle between two vectors; 1 where one vanishes.
 double cosine(Vec3 a, Vec3 b) {
   const double lengths = norm(a) * norm(b);
   return lengths > 0 ? dot(a, b) / lengths : 1;
+}
+
+/// Whether a length, given squared, exceeds a multiple of a vector's; the root only where it is not clear without.
+bool longer(double length2, double factor, Vec3 v) {
+  if (length2 <= factor * factor * norm2(v)) return false;
+  return std::sqrt(length2) > factor * norm(v) + kNoLength;
 }
 
 /// Radon's rule of degree five on a triangle: barycentric points and weights.
@@ -92,11 +87,32 @@ const std::array<RulePoint, 7> kRadon = [] {
                                    {far, far, 1 - 2 * far, heavy}}};
 }();
 
-/// How many of two triangles have a property.
-template <class Property>
-int count(Property property, const Corner& a, const Corner& b, const Corner& c, const Corner& d, const Corner& e,
-          const Corner& f) {
-  return (property(a, b, c) ? 1 : 0) + (property(d, e, f) ? 1 : 0);
+/// A triangle that a flip is judged by.
+struct Facet {
+  const Corner &a, &b, &c;
+  bool degenerate = false;
+  Vec3 normal;  ///< of twice its area's length
+};
+
+Facet facet(const Corner& a, const Corner& b, const Corner& c) {
+  return {a, b, c, degenerate(a, b, c), cross(b.position - a.position, c.position - a.position)};
+}
+
+/// So flat, in space or in the chart, that its angles are rounding errors: the middle of a chart edge, rounded to the
+/// grid, is not on the edge.
+bool flat(const Facet& f) {
+  if (f.degenerate) return false;
+  const Vec3 u = f.b.position - f.a.position, v = f.c.position - f.a.position;
+  const double longest = std::max({norm2(u), norm2(v), norm2(v - u)});
+  if (norm2(f.normal) <= kFlat * kFlat * longest * longest) return true;
+  const Vec2 r = f.b.q - f.a.q, s = f.c.q - f.a.q;
+  return std::abs(cross(r, s)) <= kFlat * std::max({norm2(r), norm2(s), norm2(s - r)});
+}
+
+/// Not parallel to a normal, up to sixty degrees.
+bool upright(Vec3 facet_normal, Vec3 normal) {
+  const double along = dot(facet_normal, normal), lengths2 = norm2(facet_normal) * norm2(normal);
+  return (along < 0 || along * along < kUpright * kUpright * lengths2) && lengths2 > 0;
 }
 
 bool inside_chart(Vec2 q) { return std::abs(q.x) <= 1 && std::abs(q.y) <= 1; }
@@ -177,9 +193,7 @@ bool folded(const Corner& a, const Corner& b, const Corner& c, const ChartSurfac
 
 double alignment(const Corner& a, const Corner& b, const Corner& c, const ChartSurface& on) {
   const Vec3 normal = cross(b.position - a.position, c.position - a.position);
-  const bool ask = disagree(a.normal, b.normal, c.normal);
-  const Vec3 mean = ask ? mean_normal(on, a.q, b.q, c.q) : a.normal + b.normal + c.normal;
-  return cosine(normal, mean);
+  return cosine(normal, surface_normal(a, b, c, on));
 }
 
 Corner make_corner(const FaceNode& node, Vec3 position, const SurfaceFirst& at, const Chart& chart) {
@@ -194,18 +208,17 @@ double arc_estimate(const Corner& a, const Corner& b) {
 bool at_pole(const Corner& a) { return norm2(a.normal) == 0; }
 
 bool bent(const Corner& a, const Corner& b) {
-  const double chord = distance(a.position, b.position);
-  if (arc_estimate(a, b) > kWrap * chord + kNoLength) return true;
+  const Vec3 chord = b.position - a.position;
   const Vec2 d = b.q - a.q;
+  const Vec3 from_a = d.x * a.dx + d.y * a.dy, from_b = d.x * b.dx + d.y * b.dy;
+  if (longer(std::min(norm2(from_a), norm2(from_b)), kWrap, chord)) return true;
   if (at_pole(a) || at_pole(b)) {
     // There the derivative says nothing; an edge that leaves the other end askew circles around the pole.
     if (at_pole(a) && at_pole(b)) return false;
-    const Corner& away = at_pole(a) ? b : a;
-    return norm(d.x * away.dx + d.y * away.dy - (b.position - a.position)) > kSlant * chord + kNoLength;
+    return longer(norm2((at_pole(a) ? from_b : from_a) - chord), kSlant, chord);
   }
   // Where the middle of Hermite's cubic is, seen from the chord's.
-  const Vec3 offset = 0.125 * (d.x * (a.dx - b.dx) + d.y * (a.dy - b.dy));
-  return off_chord(offset, b.position - a.position);
+  return off_chord(0.125 * (from_a - from_b), chord);
 }
 
 bool confirmed_bent(const Corner& a, const Corner& b, const ChartSurface& on) {
@@ -220,6 +233,8 @@ bool confirmed_bent(const Corner& a, const Corner& b, const ChartSurface& on) {
 }
 
 bool off_chord(Vec3 offset, Vec3 chord) {
+  static_assert(kBend < 0.5, "what is nearer to the chord's middle is off in neither way");
+  if (norm2(offset) <= kBend * kBend * norm2(chord)) return false;
   const double length = norm(chord);
   if (norm(cross(offset, chord)) > kBend * length * length + kNoLength * length) return true;
   // Along the chord only speed is told, unless the middle lies beyond an end.
@@ -227,6 +242,29 @@ bool off_chord(Vec3 offset, Vec3 chord) {
 }
 
 namespace {
+
+/// The two triangles before or after a flip.
+struct FacetPair {
+  Facet first, second;
+};
+
+int count_flat(const FacetPair& pair) { return (flat(pair.first) ? 1 : 0) + (flat(pair.second) ? 1 : 0); }
+
+int count_degenerate(const FacetPair& pair) {
+  return (pair.first.degenerate ? 1 : 0) + (pair.second.degenerate ? 1 : 0);
+}
+
+int count_upright(const FacetPair& pair, const ChartSurface& on) {
+  const auto stands = [&on](const Facet& f) {
+    return !f.degenerate && upright(f.normal, surface_normal(f.a, f.b, f.c, on));
+  };
+  return (stands(pair.first) ? 1 : 0) + (stands(pair.second) ? 1 : 0);
+}
+
+double least_alignment(const FacetPair& pair, const ChartSurface& on) {
+  const auto of = [&on](const Facet& f) { return alignment(f.a, f.b, f.c, on); };
+  return std::min(of(pair.first), of(pair.second));
+}
 
 /// Delaunay in the mean of the corners' first fundamental forms.
 bool flip_improves_on_surface(const Corner& a, const Corner& b, const Corner& c, const Corner& d) {
@@ -252,13 +290,11 @@ bool flip_improves(const Corner& a, const Corner& b, const Corner& c, const Corn
                    const ChartSurface& on) {
   if (order == FlipOrder::on_surface) return flip_improves_on_surface(a, b, c, d);
   if (c.vertex == d.vertex) return false;
-  const int flat_now = count(flat, a, b, c, b, a, d), flat_then = count(flat, a, d, c, d, b, c);
+  const FacetPair now{facet(a, b, c), facet(b, a, d)}, then{facet(a, d, c), facet(d, b, c)};
+  const int flat_now = count_flat(now), flat_then = count_flat(then);
   if (flat_then != flat_now) return flat_then < flat_now;
-  if (order == FlipOrder::upright_first) {
-    const auto stands = [&on](const Corner& p, const Corner& q, const Corner& r) { return upright(p, q, r, on); };
-    const int upright_now = count(stands, a, b, c, b, a, d), upright_then = count(stands, a, d, c, d, b, c);
-    if (upright_then != upright_now) return upright_then < upright_now;
-  }
+  const int upright_now = count_upright(now, on), upright_then = count_upright(then, on);
+  if (order == FlipOrder::upright_first && upright_then != upright_now) return upright_then < upright_now;
   const bool pole = at_pole(a) || at_pole(b) || at_pole(c) || at_pole(d);
   const auto bends = [&](const Corner& p, const Corner& q) {
     return pole ? bent_beside_pole(p, q, on) : confirmed_bent(p, q, on);
@@ -266,13 +302,11 @@ bool flip_improves(const Corner& a, const Corner& b, const Corner& c, const Corn
   const bool bent_then = bends(c, d), bent_now = bends(a, b);
   if (bent_then && bent_now) return arc_estimate(c, d) < (1 - kFlipMargin) * arc_estimate(a, b);
   if (bent_then != bent_now) return bent_now;
-  const int degenerate_now = count(degenerate, a, b, c, b, a, d), degenerate_then = count(degenerate, a, d, c, d, b, c);
+  const int degenerate_now = count_degenerate(now), degenerate_then = count_degenerate(then);
   if (degenerate_then != degenerate_now) return degenerate_then < degenerate_now;
   if (degenerate_now > 0) return apex_improves(a, b, c, d);
-  const double aligned_then = std::min(alignment(a, d, c, on), alignment(d, b, c, on));
-  const double aligned_now = std::min(alignment(a, b, c, on), alignment(b, a, d, on));
   // A fin stands upright on the surface: thin in the chart, where a point was put on a long edge, but not in space.
-  if (std::min(aligned_now, aligned_then) < kUpright) return aligned_then > aligned_now + kFlipMargin;
+  if (upright_now + upright_then > 0) return least_alignment(then, on) > least_alignment(now, on) + kFlipMargin;
   return cotangent(c.position, a.position, b.position) + cotangent(d.position, a.position, b.position) < -kFlipMargin;
 }
 

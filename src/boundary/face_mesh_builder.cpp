@@ -122,7 +122,6 @@ std::vector<double> pole_parameters(const Surface& surface, const EdgeUse& use, 
 }
 
 struct FaceRound {
-  FaceInput input;
   std::vector<LoopFault> faults;
   std::vector<SegmentRef> split;
   bool built = false;
@@ -141,8 +140,7 @@ class FaceBuilder {
   FaceRound run(FaceMesh& mesh, bool last_round) {
     chart_ = mesh.chart;
     FaceRound round;
-    round.input = assemble();
-    const FaceInput& input = round.input;
+    FaceInput input = assemble();
     if (!last_round) {
       find_crowded_arcs(input, round.split);
       if (!round.split.empty()) return round;
@@ -150,7 +148,7 @@ class FaceBuilder {
     round.faults = mesh.build(input);
     const auto tolerance = [this](std::int32_t use) { return true_tolerance(*uses_[static_cast<std::size_t>(use)]); };
     for (int k = 0; k < kUntangleRounds && !round.faults.empty(); ++k) {
-      if (!untangle(round.faults, *face_.surface, chart_, tolerance, round.input)) break;
+      if (!untangle(round.faults, *face_.surface, chart_, tolerance, input)) break;
       round.faults = mesh.build(input);
     }
     round.built = round.faults.empty();
@@ -433,8 +431,7 @@ ScaledChart make_chart(const ModelFace& face, const Model& model) {
 }
 
 Status build_face_meshes(const Model& model, const BoundaryOptions& options, VertexStore& vertices, BoundaryMesh& mesh,
-                         IndexedVector<FaceId, FaceInput>& inputs, std::vector<FaceFailure>& failures,
-                         Context& context) {
+                         std::vector<FaceFailure>& failures, Context& context) {
   const std::size_t n = model.faces.size();
   number_uses(model, mesh);
   mesh.faces.assign(n, FaceMesh());
@@ -468,9 +465,7 @@ Status build_face_meshes(const Model& model, const BoundaryOptions& options, Ver
   }
   build(rest, true);
   if (context.should_stop()) return context.stop_error("face meshes");
-  inputs.resize(n);
   for (std::size_t f = 0; f < n; ++f) {
-    inputs[FaceId(f)] = std::move(rounds[f].input);
     if (rounds[f].built) continue;
     FaceFailure failure{FaceId(f), "not built", "", {}};
     if (!rounds[f].faults.empty()) {
@@ -483,30 +478,6 @@ Status build_face_meshes(const Model& model, const BoundaryOptions& options, Ver
     failures.push_back(std::move(failure));
   }
   return Done{};
-}
-
-FaceMesh with_vertices(const FaceMesh& mesh, FaceInput input, const std::function<VertexId(VertexId)>& final_id) {
-  const auto place = [](Vec2 q) { return std::pair(q.x, q.y); };
-  for (std::size_t n = 0; n < mesh.node_count(); ++n) {
-    const FaceNode& node = mesh.node(NodeId(n));
-    const VertexId id = final_id(node.vertex);
-    if (id != node.vertex) input.isolated.push_back({id, node.q});
-  }
-  FaceMesh made;
-  made.chart = mesh.chart;
-  CURVETET_CHECK(made.build(input).empty());
-  std::map<std::pair<double, double>, NodeId> nodes;
-  for (std::size_t n = 0; n < made.node_count(); ++n) nodes[place(made.node(NodeId(n)).q)] = NodeId(n);
-  std::vector<std::array<NodeId, 3>> triangles;
-  for (std::size_t t = 0; t < mesh.triangle_slots(); ++t) {
-    const FaceTriangle& triangle = mesh.triangle(TriangleId(t));
-    if (!triangle.alive()) continue;
-    std::array<NodeId, 3> corners;
-    for (std::size_t i = 0; i < 3; ++i) corners[i] = nodes.at(place(mesh.node(triangle.node[i]).q));
-    triangles.push_back(corners);
-  }
-  CURVETET_CHECK(made.replace(triangles));
-  return made;
 }
 
 }  // namespace curvetet

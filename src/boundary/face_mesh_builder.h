@@ -2,7 +2,6 @@
 // and nested there.
 #pragma once
 
-#include <functional>
 #include <vector>
 
 #include "base/context.h"
@@ -25,13 +24,8 @@ ScaledChart make_chart(const ModelFace& face, const Model& model);
 /// Builds all face meshes on the curve meshes, splitting segments whose chords cross or are not nested in some chart
 /// (and those whose region between chord and arc holds something else), in rounds over all faces. Terminates: each
 /// round splits a segment, no segment below the floor is split, and there are at most `options.loop_rounds` rounds.
-/// After: mesh.uses, and mesh.faces[f] for every face that is not in `failures`; inputs[f] is what it was built from.
+/// After: mesh.uses, and mesh.faces[f] for every face that is not in `failures`.
 Status build_face_meshes(const Model& model, const BoundaryOptions& options, VertexStore& vertices, BoundaryMesh& mesh,
-                         IndexedVector<FaceId, FaceInput>& inputs, std::vector<FaceFailure>& failures,
-                         Context& context);
-
-/// The same triangulation with other vertex ids at its interior nodes. REQUIRED: `input` is what the mesh was built
-/// from, nothing but interior nodes was added since.
-FaceMesh with_vertices(const FaceMesh& mesh, FaceInput input, const std::function<VertexId(VertexId)>& final_id);
+                         std::vector<FaceFailure>& failures, Context& context);
 
 }  // namespace curvetet

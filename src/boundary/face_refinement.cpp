@@ -69,13 +69,13 @@ class FaceRefiner {
       empty_queue(context);
       order_ = FlipOrder::bends_first;
     }
-    mesh_.restore(alive(), wanted_, changed_);
+    mesh_.restore(wanted_, changed_);
     enqueue(alive());
     empty_queue(context);
     // Flips that the chart forbade while triangles were large have become legal meanwhile.
     order_ = FlipOrder::upright_first;
     for (int round = 0; round < kLastRounds && !context.should_stop(); ++round) {
-      mesh_.restore(alive(), wanted_, changed_);
+      mesh_.restore(wanted_, changed_);
       if (changed_.empty()) break;
       enqueue(changed_);
       empty_queue(context);

@@ -37,15 +37,19 @@ class Fallback {
   bool refuse_crossings() {
     std::vector<SurfaceTriangle> triangles = surface_triangles(conjoint_.boundary().faces[face_], face_);
     add_locked(triangles);
+    return report_crossings(triangles, "a facet crosses one of a face that is locked");
+  }
+
+  /// One failure for each face whose facets cross those of this one, which come first.
+  bool report_crossings(const std::vector<SurfaceTriangle>& triangles, const char* what) {
     std::set<FaceId> told;
     for (const auto& [i, j] : crossing_pairs(conjoint_.vertices(), triangles)) {
-      const SurfaceTriangle& own = triangles[i];  // the face's own come first, and locked facets do not cross
+      if (triangles[i].face != face_) continue;
       const FaceId other = triangles[j].face;
       if (!told.insert(other).second) continue;
-      RecoveryFailure failure = failure_at(own);
+      RecoveryFailure failure = failure_at(triangles[i]);
       failure.faces.push_back(other);
-      failure.what =
-          other == face_ ? "facets of the surface mesh cross" : "a facet crosses one of a face that is locked";
+      failure.what = other == face_ ? "facets of the surface mesh cross" : what;
       failure.crossing = true;
       result_.failures.push_back(std::move(failure));
     }
@@ -74,6 +78,13 @@ class Fallback {
   }
 
   void report_missing(const std::vector<SurfaceTriangle>& missing) {
+    std::vector<SurfaceTriangle> triangles = missing;
+    for (std::size_t f = 0; f < conjoint_.model().faces.size(); ++f) {
+      if (FaceId(f) == face_) continue;
+      const std::vector<SurfaceTriangle> others = surface_triangles(conjoint_.boundary().faces[FaceId(f)], FaceId(f));
+      triangles.insert(triangles.end(), others.begin(), others.end());
+    }
+    if (report_crossings(triangles, "a facet crosses one of another face")) return;
     RecoveryFailure failure = failure_at(missing.front());
     failure.what = fmt::format("{} facets are not recovered, not even one by one", missing.size());
     result_.failures.push_back(std::move(failure));

@@ -103,11 +103,7 @@ class FaceMeshBuilder {
     }
     // Every triangle, not only the recovered ones: marks made on the way do not matter to an edge that is not
     // constrained.
-    std::vector<TriangleId> all;
-    for (std::uint32_t t = 0; t < mesh_.triangles_.size(); ++t) all.push_back(TriangleId(t));
-    if (!made.empty())
-      mesh_.restore(
-          all, [this](auto... nodes) { return incircle_wanted(nodes...); }, made);
+    if (!made.empty()) mesh_.restore([this](auto... nodes) { return incircle_wanted(nodes...); }, made);
   }
 
   /// 1 on the left of a one-sided segment, else 0.

@@ -275,14 +275,17 @@ void FaceMesh::index_boundary() {
     }
   }
   boundary_.reset(low, high, count);
+  poles_.clear();
   for (const FaceTriangle& f : triangles_) {
     for (int i = 0; f.alive() && i < 3; ++i) {
       const NodeId a = f.node[next(i)], b = f.node[previous(i)];
       if (f.neighbour[i].valid()) continue;
       boundary_.add({a.value(), b.value()}, point(a), point(b));
-      has_pole_ = has_pole_ || nodes_[a].vertex == nodes_[b].vertex;
+      if (nodes_[a].vertex == nodes_[b].vertex) poles_.push_back(nodes_[a].vertex);
     }
   }
+  std::sort(poles_.begin(), poles_.end());
+  poles_.erase(std::unique(poles_.begin(), poles_.end()), poles_.end());
 }
 
 }  // namespace curvetet

@@ -137,6 +137,7 @@ class FaceMesh {
   /// need not be transitive. `changed` becomes the triangles touched. An edge to a pole that is there more
   /// than once in the chart, with triangles over the pole between, is flipped as the one edge that it is in space.
   void restore(std::span<const TriangleId> from, const FlipWanted& wanted, std::vector<TriangleId>& changed);
+  void restore(const FlipWanted& wanted, std::vector<TriangleId>& changed);  ///< from all triangles
 
   /// Removes a node without constrained edges and fills its star without flips, then restores the criterion if one is
   /// given. False, and nothing changed, for any other node. The node keeps its number but is in no triangle.
@@ -171,6 +172,11 @@ class FaceMesh {
     TriangleId holder;  ///< inside: a triangle that contains q
   };
 
+  /// An edge that is to be asked for, if it is still that of these two nodes.
+  struct AwaitingEdge {
+    FaceEdge edge;
+    NodeId a, b;
+  };
   /// How often the boundary winds around a point, by the boundary edges that a ray from it meets.
   struct Ray {
     int winding = 0;
@@ -205,6 +211,8 @@ class FaceMesh {
   void place_in_triangle(NodeId n, TriangleId t, std::vector<TriangleId>& fan);
   void place_on_edge(NodeId n, FaceEdge e, std::vector<TriangleId>& fan);
   void restore_around(std::vector<TriangleId>& changed, const FlipWanted& wanted);
+  void await(FaceEdge e);
+  void restore_awaiting(const FlipWanted& wanted, std::vector<TriangleId>& changed);
   void flip_star(NodeId n, std::vector<TriangleId>& fan, const FlipWanted& wanted);
   bool can_flip(FaceEdge e) const;
   std::array<TriangleId, 2> flip_edge(FaceEdge e);
@@ -221,6 +229,7 @@ class FaceMesh {
                                        std::vector<std::array<NodeId, 3>> fill);
   std::vector<TriangleId> leave_ring(TriangleId over, const FlipWanted& wanted);
   std::vector<TriangleId> join_ring(FaceEdge below_pole, const FlipWanted& wanted);
+  bool touches_pole(FaceEdge edge) const;
   std::vector<TriangleId> flip_at_pole(FaceEdge edge, const FlipWanted& wanted);
 
   // cavity.cpp
@@ -243,9 +252,10 @@ class FaceMesh {
   NodeIndex index_;
   SegmentGrid boundary_;         // the edges of one triangle, by their nodes as that triangle sees them
   std::vector<NodeId> pinched_;  // nodes where the domain touches itself: more than one fan; sorted
-  bool has_pole_ = false;        // a boundary edge with one vertex at both ends
+  std::vector<VertexId> poles_;  // at both ends of a boundary edge; few
   std::size_t constrained_ = 0;  // sides of triangles on constrained edges
   std::vector<TriangleId> scratch_;
+  std::vector<AwaitingEdge> awaiting_;
 };
 
 }  // namespace curvetet

@@ -31,7 +31,13 @@ NodeId FaceMesh::insert(VertexId vertex, Vec2 q, TriangleId triangle, const Flip
   place(n, triangle, changed);
   if (!wanted) return n;
   flip_star(n, changed, wanted);
-  restore_around(changed, wanted);
+  // The edges opposite the node were asked for, and nothing next to them has changed since; but flips at a pole were
+  // not.
+  for (const TriangleId t : changed) {
+    await({t, 1});
+    if (touches_pole({t, 0})) await({t, 0});
+  }
+  restore_awaiting(wanted, changed);
   return n;
 }
 
@@ -163,32 +169,42 @@ bool FaceMesh::flip(FaceEdge edge) {
 
 // Adds what restoring touches to the triangles changed so far.
 void FaceMesh::restore_around(std::vector<TriangleId>& changed, const FlipWanted& wanted) {
-  std::vector<TriangleId> touched;
-  restore(changed, wanted, touched);
-  changed.insert(changed.end(), touched.begin(), touched.end());
-  std::sort(changed.begin(), changed.end());
-  changed.erase(std::unique(changed.begin(), changed.end()), changed.end());
+  for (const TriangleId t : changed) {
+    for (int i = 0; triangles_[t].alive() && i < 3; ++i) await({t, i});
+  }
+  restore_awaiting(wanted, changed);
+}
+
+void FaceMesh::restore(std::span<const TriangleId> from, const FlipWanted& wanted, std::vector<TriangleId>& changed) {
+  for (const TriangleId t : from) {
+    for (int i = 0; triangles_[t].alive() && i < 3; ++i) await({t, i});
+  }
+  changed.clear();
+  restore_awaiting(wanted, changed);
+}
+
+void FaceMesh::restore(const FlipWanted& wanted, std::vector<TriangleId>& changed) {
+  for (std::uint32_t k = 0; k < triangles_.size(); ++k) {
+    const FaceTriangle& f = triangles_[TriangleId(k)];
+    for (int i = 0; f.alive() && i < 3; ++i) {
+      if (f.neighbour[i].valid() && f.neighbour[i] > TriangleId(k)) await({TriangleId(k), i});
+    }
+  }
+  changed.clear();
+  restore_awaiting(wanted, changed);
+}
+
+void FaceMesh::await(FaceEdge e) {
+  const auto [a, b] = ends(e);
+  awaiting_.push_back({e, a, b});
 }
 
 // A criterion that is not transitive could flip for ever: the number of flips is bounded by a multiple of the edges.
-void FaceMesh::restore(std::span<const TriangleId> from, const FlipWanted& wanted, std::vector<TriangleId>& changed) {
-  struct Waiting {
-    FaceEdge edge;
-    NodeId a, b;
-  };
-  std::vector<Waiting> stack;
-  std::vector<TriangleId> touched;
-  const auto push = [&](FaceEdge e) {
-    const auto [a, b] = ends(e);
-    stack.push_back({e, a, b});
-  };
-  for (const TriangleId t : from) {
-    for (int i = 0; triangles_[t].alive() && i < 3; ++i) push({t, i});
-  }
-  auto budget = static_cast<std::ptrdiff_t>(64 + 32 * stack.size());
-  while (!stack.empty() && budget > 0) {
-    const Waiting w = stack.back();
-    stack.pop_back();
+void FaceMesh::restore_awaiting(const FlipWanted& wanted, std::vector<TriangleId>& changed) {
+  auto budget = static_cast<std::ptrdiff_t>(64 + 32 * awaiting_.size());
+  while (!awaiting_.empty() && budget > 0) {
+    const AwaitingEdge w = awaiting_.back();
+    awaiting_.pop_back();
     const FaceTriangle& f = triangles_[w.edge.triangle];
     // An edge that moved to another triangle was pushed again by the flip that moved it.
     if (f.node[next(w.edge.local)] != w.a || f.node[previous(w.edge.local)] != w.b) continue;
@@ -196,25 +212,24 @@ void FaceMesh::restore(std::span<const TriangleId> from, const FlipWanted& wante
       return wanted(w.a, w.b, f.node[w.edge.local], triangles_[m.triangle].node[m.local]);
     };
     if (!can_flip(w.edge) || !asked(mirror(w.edge))) {
-      if (!has_pole_) continue;
       for (const TriangleId t : flip_at_pole(w.edge, wanted)) {
-        touched.push_back(t);
-        for (int i = 0; i < 3; ++i) push({t, i});
+        changed.push_back(t);
+        for (int i = 0; i < 3; ++i) await({t, i});
         --budget;
       }
       continue;
     }
     const auto [t, s] = flip_edge(w.edge);
     --budget;
-    touched.insert(touched.end(), {t, s});
-    push({t, 0});
-    push({t, 2});
-    push({s, 0});
-    push({s, 1});
+    changed.insert(changed.end(), {t, s});
+    await({t, 0});
+    await({t, 2});
+    await({s, 0});
+    await({s, 1});
   }
-  std::sort(touched.begin(), touched.end());
-  touched.erase(std::unique(touched.begin(), touched.end()), touched.end());
-  changed = std::move(touched);
+  awaiting_.clear();
+  std::sort(changed.begin(), changed.end());
+  changed.erase(std::unique(changed.begin(), changed.end()), changed.end());
 }
 
 }  // namespace curvetet

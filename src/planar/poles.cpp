@@ -109,8 +109,20 @@ std::vector<TriangleId> FaceMesh::join_ring(FaceEdge below_pole, const FlipWante
   return join_to_pole(std::array{u, c, s}, run, {});
 }
 
+// A triangle over a pole has nodes at the pole, and what joins a ring is opposite one.
+bool FaceMesh::touches_pole(FaceEdge edge) const {
+  if (poles_.empty() || is_constrained(edge) || on_boundary(edge)) return false;
+  const auto at_pole = [this](NodeId n) {
+    return std::find(poles_.begin(), poles_.end(), nodes_[n].vertex) != poles_.end();
+  };
+  const FaceTriangle& f = triangles_[edge.triangle];
+  if (at_pole(f.node[0]) || at_pole(f.node[1]) || at_pole(f.node[2])) return true;
+  const FaceEdge m = mirror(edge);
+  return at_pole(triangles_[m.triangle].node[m.local]);
+}
+
 std::vector<TriangleId> FaceMesh::flip_at_pole(FaceEdge edge, const FlipWanted& wanted) {
-  if (is_constrained(edge) || on_boundary(edge)) return {};
+  if (!touches_pole(edge)) return {};
   const FaceEdge m = mirror(edge);
   // The edge of the pole itself is constrained: one of a triangle over the pole leads to the pole from its apex.
   for (const FaceEdge e : {edge, m})

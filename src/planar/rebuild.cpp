@@ -126,6 +126,7 @@ void FaceMesh::rename(const std::function<VertexId(VertexId)>& new_id) {
     nodes_[NodeId(n)].vertex = new_id(nodes_[NodeId(n)].vertex);
     index_.add(nodes_[NodeId(n)].vertex, NodeId(n));
   }
+  for (VertexId& pole : poles_) pole = new_id(pole);
 }
 
 std::vector<LoopFault> FaceMesh::rebuild(const FaceInput& input, std::vector<VertexId>& dropped) {
