@@ -699,9 +699,24 @@ TEST(Validate, VolumesAreExplainedByGapsAsFarAsTheyReach) {
       for (ModelFace& face : sample.model.faces)
         for (Loop& loop : face.loops)
           for (EdgeUse& use : loop.uses) use.curve = std::make_shared<Beside>(use.curve, by);
-      const bool found = find(check(sample, true), "volume") != nullptr;
+      const ValidationReport report = check(sample, true);
+      const bool found = find(report, "volume") != nullptr || find(report, "cad_volume") != nullptr;
       EXPECT_EQ(found, gap == 0 || factor == 2) << gap << " " << factor;
     }
+  }
+}
+
+// A kernel's volume may be wrong though the faces are not: offset surfaces, parameter curves that jump by a period.
+TEST(Validate, WrongVolumeOfTheKernelAloneIsAWarning) {
+  for (const double factor : {0.5, 1.02, 2.0}) {
+    Sample sample = box();
+    sample.model.solids[SolidId(0U)].volume *= factor;
+    const ValidationReport report = check(sample, true);
+    EXPECT_TRUE(report.valid());
+    EXPECT_EQ(find(report, "volume"), nullptr);
+    const Finding* found = find(report, "cad_volume");
+    ASSERT_NE(found, nullptr) << factor;
+    EXPECT_EQ(found->severity, Severity::warning);
   }
 }
 
