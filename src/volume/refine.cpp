@@ -258,6 +258,23 @@ class Refinement {
     return reach2 <= std::min(options_.radius_edge * options_.radius_edge * shortest2, largest * largest) * volumes2;
   }
 
+  /// The size at a tet's centroid, or where it is clear without whether the radius is too large, about that size: by
+  /// the grading, the sizes at the corners bound it.
+  double size_to_judge_by(TetId t, const std::array<Vec3, 4>& p, double radius) const {
+    const Vec3 centroid = 0.25 * (p[0] + p[1] + p[2] + p[3]);
+    if (has_local_sizes_) return size_at(centroid, complex_.region(t));
+    double low = 0, high = std::numeric_limits<double>::infinity(), sum = 0;
+    for (std::size_t i = 0; i < 4; ++i) {
+      const double size = vertex_size_[complex_.vertices(t)[i]];
+      const double change = field_.options().grading * distance(p[i], centroid);
+      low = std::max(low, size - change);
+      high = std::min(high, size + change);
+      sum += size;
+    }
+    const bool is_clear = radius <= kRadiusOverSize * low || radius > kRadiusOverSize * high;
+    return is_clear ? std::min(std::max(0.25 * sum, low), high) : size_at(centroid, complex_.region(t));
+  }
+
   Judgement judge(TetId t) const {
     const auto p = points(t);
     Judgement j;
@@ -269,9 +286,7 @@ class Refinement {
     }
     shortest = std::sqrt(shortest);
     const double shape = radius / (options_.radius_edge * shortest);
-    // Over the largest that the size field allows.
-    const double too_large =
-        radius / (kRadiusOverSize * size_at(0.25 * (p[0] + p[1] + p[2] + p[3]), complex_.region(t)));
+    const double too_large = radius / (kRadiusOverSize * size_to_judge_by(t, p, radius));
     j.badness = std::max(shape, too_large);
     j.least_distance = too_large > 1 ? std::numeric_limits<double>::infinity() : shortest;
     return j;
