@@ -293,7 +293,8 @@ void draw_crossings(const std::string& folder) {
   const auto run = start(model_of(shell(10, 9.4)), 9, 0, false);
   const auto marked = [&] {
     std::set<std::size_t> crossing;
-    for (const auto& [a, b] : crossing_pairs(run->vertices, surface_triangles(run->boundary))) crossing.insert({a, b});
+    for (const auto& [a, b] : crossing_pairs(run->vertices, surface_triangles(run->boundary), Context()))
+      crossing.insert({a, b});
     return surface(*run, [&](std::size_t i, const SurfaceTriangle& t) {
       return crossing.contains(i) ? kRed : t.face == FaceId(0) ? kPlain : colour_of_index(1);
     });

@@ -59,4 +59,10 @@ struct Box3 {
   Vec3 centre() const { return 0.5 * (low + high); }
 };
 
+/// The box and all within `reach` of it along an axis.
+inline Box3 grown(const Box3& box, double reach) {
+  const Vec3 by{reach, reach, reach};
+  return {box.low - by, box.high + by};
+}
+
 }  // namespace curvetet

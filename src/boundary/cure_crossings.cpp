@@ -21,6 +21,7 @@ namespace curvetet {
 
 namespace {
 
+constexpr std::uint32_t kGone = std::numeric_limits<std::uint32_t>::max();
 constexpr std::size_t kPointsPerPair = 8;
 // More crossings than this are no thin wall but a surface mesh gone wrong.
 constexpr std::size_t kPairsPerTriangle = 4;
@@ -53,20 +54,21 @@ class CrossingCure {
   Result<CrossingResult> run() {
     for (result_.rounds = 0; result_.rounds <= options_.rounds; ++result_.rounds) {
       if (context_.should_stop()) return context_.stop_error("surface crossings");
-      triangles_ = surface_triangles(conjoint_.boundary());
-      const auto pairs = crossing_pairs(conjoint_.vertices(), triangles_, kPairsPerTriangle * triangles_.size());
+      find_faults();
+      const std::vector<TrianglePair>& pairs = pairs_;
+      const std::vector<std::uint32_t>& folds = folds_;
       if (result_.rounds == 0) {
         result_.first_pairs = pairs.size();
+        result_.first_folds = folds.size();
         budget_ = budget_for(pairs);
       }
       context_.log(LogLevel::debug, fmt::format("crossings, round {}: {} pairs of {} triangles", result_.rounds,
                                                 pairs.size(), triangles_.size()));
-      const std::vector<std::uint32_t> folds = find_folds();
-      if (result_.rounds == 0) result_.first_folds = folds.size();
       if (pairs.empty() && folds.empty()) return result_;
       count_stalled(pairs.size() + folds.size());
       deviations_.assign(triangles_.size(), std::nullopt);
-      const bool any_through = std::any_of(pairs.begin(), pairs.end(), [this](const Pair& p) { return through(p); });
+      const bool any_through =
+          std::any_of(pairs.begin(), pairs.end(), [this](const TrianglePair& p) { return through(p); });
       rounds_through_ = any_through ? rounds_through_ + 1 : 0;
       const bool hopeless = faces_cross() || result_.rounds == options_.rounds ||
                             static_cast<double>(result_.points) > budget_ ||
@@ -81,11 +83,56 @@ class CrossingCure {
   }
 
  private:
-  using Pair = std::pair<std::uint32_t, std::uint32_t>;  ///< of triangles that cross
+  /// Lists the triangles anew with what crosses or is folded, which is looked for among those alone that were not there
+  /// in the last round.
+  void find_faults() {
+    const std::vector<SurfaceTriangle> before = std::move(triangles_);
+    triangles_ = surface_triangles(conjoint_.boundary());
+    std::vector<char> is_fresh(triangles_.size(), 1);
+    const std::vector<std::uint32_t> place = places_of(before);
+    for (const std::uint32_t i : place)
+      if (i != kGone) is_fresh[i] = 0;
+    std::vector<TrianglePair> pairs =
+        crossing_pairs(conjoint_.vertices(), triangles_, is_fresh, kPairsPerTriangle * triangles_.size(), context_);
+    for (const auto& [i, j] : pairs_)
+      if (place[i] != kGone && place[j] != kGone) pairs.emplace_back(place[i], place[j]);
+    std::sort(pairs.begin(), pairs.end());
+    pairs_ = std::move(pairs);
+    std::vector<std::uint32_t> folds;
+    for (const std::uint32_t i : folds_)
+      if (place[i] != kGone) folds.push_back(place[i]);
+    for (std::uint32_t i = 0; i < triangles_.size(); ++i)
+      if (is_fresh[i] != 0 && is_fold(triangles_[i])) folds.push_back(i);
+    std::sort(folds.begin(), folds.end());
+    folds_ = std::move(folds);
+  }
+
+  /// Where each triangle of a former list is in the present one. Both are in the order of faces and slots.
+  std::vector<std::uint32_t> places_of(const std::vector<SurfaceTriangle>& before) const {
+    std::vector<std::uint32_t> place(before.size(), kGone);
+    const auto key = [](const SurfaceTriangle& t) { return std::pair(t.face, t.triangle); };
+    std::uint32_t i = 0;
+    for (std::size_t k = 0; k < before.size(); ++k) {
+      while (i < triangles_.size() && key(triangles_[i]) < key(before[k])) ++i;
+      const bool is_same =
+          i < triangles_.size() && key(triangles_[i]) == key(before[k]) && triangles_[i].vertices == before[k].vertices;
+      if (is_same) place[k] = i;
+    }
+    return place;
+  }
+
+  bool is_fold(const SurfaceTriangle& t) const {
+    double cosine = facing(conjoint_, t.face, t.triangle);
+    if (cosine < kStraight ||
+        deviation(conjoint_, t.face, t.triangle) > kFar * longest_edge(conjoint_.vertices(), t.vertices))
+      cosine = std::min(
+          cosine, facing_at_foot(conjoint_, t.face, conjoint_.boundary().faces[t.face].triangle(t.triangle).node));
+    return cosine < kFolded;
+  }
 
   /// A legal cure of a thin wall may need many times the points of the first mesh: as many as triangles of the floor's
   /// spacing cover what crosses. Slivers have no area, so that some points per pair and triangle are granted, too.
-  double budget_for(const std::vector<Pair>& pairs) const {
+  double budget_for(const std::vector<TrianglePair>& pairs) const {
     std::set<std::uint32_t> crossing;
     for (const auto& [i, j] : pairs) crossing.insert({i, j});
     double area = 0;
@@ -108,7 +155,7 @@ class CrossingCure {
   }
 
   /// Do two facets go through each other by more than they leave their faces?
-  bool through(const Pair& pair) {
+  bool through(const TrianglePair& pair) {
     const auto [i, j] = pair;
     const double height = kHeights * (deviation_of(i) + deviation_of(j)) + 8 * kGrid;
     return passes_through(i, j, height) || passes_through(j, i, height);
@@ -159,7 +206,7 @@ class CrossingCure {
 
   /// Takes out nodes where a face overlaps itself in one sheet: facets that lie on it already do so because its
   /// parameters are sheared, and more points would only make more such facets.
-  bool thin_out(const std::vector<Pair>& pairs, const std::vector<std::uint32_t>& folds) {
+  bool thin_out(const std::vector<TrianglePair>& pairs, const std::vector<std::uint32_t>& folds) {
     std::map<std::uint32_t, Lying> known;
     const auto lying_of = [&](std::uint32_t i) {
       const auto [at, is_new] = known.try_emplace(i);
@@ -191,7 +238,7 @@ class CrossingCure {
     return any;
   }
 
-  bool refine(const std::vector<Pair>& pairs) {
+  bool refine(const std::vector<TrianglePair>& pairs) {
     bool any = false;
     for (const auto& [i, j] : pairs) {
       if (context_.should_stop()) return any;
@@ -202,20 +249,6 @@ class CrossingCure {
       if (refine_one(a_first ? a : b, std::max(da, db)) || refine_one(a_first ? b : a, std::min(da, db))) any = true;
     }
     return any;
-  }
-
-  std::vector<std::uint32_t> find_folds() const {
-    std::vector<std::uint32_t> folds;
-    for (std::uint32_t i = 0; i < triangles_.size(); ++i) {
-      const SurfaceTriangle& t = triangles_[i];
-      double cosine = facing(conjoint_, t.face, t.triangle);
-      if (cosine < kStraight ||
-          deviation(conjoint_, t.face, t.triangle) > kFar * longest_edge(conjoint_.vertices(), t.vertices))
-        cosine = std::min(
-            cosine, facing_at_foot(conjoint_, t.face, conjoint_.boundary().faces[t.face].triangle(t.triangle).node));
-      if (cosine < kFolded) folds.push_back(i);
-    }
-    return folds;
   }
 
   bool unfold(const std::vector<std::uint32_t>& folds) {
@@ -272,8 +305,8 @@ class CrossingCure {
   }
 
   /// Where faces cross, that is the failure, whatever else is left.
-  void report_all(const std::vector<Pair>& pairs, const std::vector<std::uint32_t>& folds) {
-    for (const Pair& pair : pairs)
+  void report_all(const std::vector<TrianglePair>& pairs, const std::vector<std::uint32_t>& folds) {
+    for (const TrianglePair& pair : pairs)
       if (!faces_cross() || through(pair)) report(pair.first, pair.second, "facets of the surface mesh cross");
     if (faces_cross()) return;
     for (std::uint32_t i : folds) report(i, i, "a facet of the surface mesh is folded against its face");
@@ -307,6 +340,8 @@ class CrossingCure {
   int stalled_ = 0;                                               ///< rounds since then
   int rounds_through_ = 0;  ///< running, in which facets passed through each other
   std::vector<SurfaceTriangle> triangles_;
+  std::vector<TrianglePair> pairs_;                ///< that cross; of the last round
+  std::vector<std::uint32_t> folds_;               ///< of the last round
   std::vector<std::optional<double>> deviations_;  ///< by triangle
   std::set<std::pair<FaceId, FaceId>> reported_;
 };

@@ -43,7 +43,7 @@ class Fallback {
   /// One failure for each face whose facets cross those of this one, which come first.
   bool report_crossings(const std::vector<SurfaceTriangle>& triangles, const char* what) {
     std::set<FaceId> told;
-    for (const auto& [i, j] : crossing_pairs(conjoint_.vertices(), triangles)) {
+    for (const auto& [i, j] : crossing_pairs(conjoint_.vertices(), triangles, context_)) {
       if (triangles[i].face != face_) continue;
       const FaceId other = triangles[j].face;
       if (!told.insert(other).second) continue;

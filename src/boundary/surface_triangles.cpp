@@ -1,9 +1,11 @@
-// Crossing triangles are found with a bounding volume hierarchy (median split, boxes in one flat array) and decided
-// exactly. A plane sweep was rejected: CAD triangles differ too much in size.
+// Crossing triangles are found with a bounding volume hierarchy over those that are asked for, which is small where few
+// have changed, and decided exactly. A plane sweep was rejected: CAD triangles differ too much in size.
 #include "boundary/surface_triangles.h"
 
 #include <algorithm>
-#include <numeric>
+
+#include "base/box_tree.h"
+#include "base/gather.h"
 
 namespace curvetet {
 
@@ -33,96 +35,43 @@ FacetKey facet_key(VertexId a, VertexId b, VertexId c) {
   return key;
 }
 
-namespace {
-
-class TriangleTree {
- public:
-  TriangleTree(const VertexStore& vertices, const std::vector<SurfaceTriangle>& triangles)
-      : vertices_(vertices), triangles_(triangles), order_(triangles.size()) {
-    boxes_.resize(triangles.size());
-    for (std::size_t i = 0; i < triangles.size(); ++i)
-      for (VertexId v : triangles[i].vertices) boxes_[i].extend(vertices.position(v));
-    std::iota(order_.begin(), order_.end(), 0U);
-    if (!triangles.empty()) build(0, order_.size());
-  }
-
-  std::vector<std::pair<std::uint32_t, std::uint32_t>> crossings(std::size_t limit) const {
-    std::vector<std::pair<std::uint32_t, std::uint32_t>> found;
-    for (std::uint32_t i = 0; i < triangles_.size() && found.size() < limit; ++i) query(i, found);
-    std::sort(found.begin(), found.end());
-    return found;
-  }
-
- private:
-  struct Node {
-    Box3 box;
-    std::uint32_t begin = 0, end = 0, right = 0;  // right child; the left one follows its parent; 0: leaf
-  };
-
-  static bool meet(const Box3& a, const Box3& b) {
-    for (int k = 0; k < 3; ++k)
-      if (a.low[k] > b.high[k] || b.low[k] > a.high[k]) return false;
-    return true;
-  }
-
-  std::uint32_t build(std::size_t begin, std::size_t end) {
-    const auto at = static_cast<std::uint32_t>(nodes_.size());
-    Node node;
-    node.begin = static_cast<std::uint32_t>(begin);
-    node.end = static_cast<std::uint32_t>(end);
-    for (std::size_t i = begin; i < end; ++i) {
-      node.box.extend(boxes_[order_[i]].low);
-      node.box.extend(boxes_[order_[i]].high);
-    }
-    nodes_.push_back(node);
-    if (end - begin <= 4) return at;
-    const Vec3 extent = node.box.high - node.box.low;
-    const int axis = extent.x >= extent.y && extent.x >= extent.z ? 0 : extent.y >= extent.z ? 1 : 2;
-    const auto key = [&](std::uint32_t i) { return boxes_[i].low[axis] + boxes_[i].high[axis]; };
-    const std::size_t middle = (begin + end) / 2;
-    const auto first = order_.begin();
-    std::nth_element(first + static_cast<std::ptrdiff_t>(begin), first + static_cast<std::ptrdiff_t>(middle),
-                     first + static_cast<std::ptrdiff_t>(end),
-                     [&](std::uint32_t i, std::uint32_t j) { return key(i) != key(j) ? key(i) < key(j) : i < j; });
-    build(begin, middle);
-    nodes_[at].right = build(middle, end);
-    return at;
-  }
-
-  void query(std::uint32_t i, std::vector<std::pair<std::uint32_t, std::uint32_t>>& found) const {
-    std::vector<std::uint32_t> stack{0};
-    while (!stack.empty()) {
-      const std::uint32_t at = stack.back();
-      const Node& node = nodes_[at];
-      stack.pop_back();
-      if (!meet(node.box, boxes_[i])) continue;
-      if (node.right != 0) {
-        stack.push_back(at + 1);
-        stack.push_back(node.right);
-        continue;
-      }
-      for (std::uint32_t k = node.begin; k < node.end; ++k) {
-        const std::uint32_t j = order_[k];
-        if (j > i && meet(boxes_[i], boxes_[j]) &&
-            triangles_cross(vertices_, triangles_[i].vertices, triangles_[j].vertices))
-          found.emplace_back(i, j);
-      }
+std::vector<TrianglePair> crossing_pairs(const VertexStore& vertices, const std::vector<SurfaceTriangle>& triangles,
+                                         const std::vector<char>& is_fresh, std::size_t limit, const Context& context) {
+  std::vector<Box3> boxes(triangles.size()), fresh_boxes;
+  std::vector<std::uint32_t> fresh, order;
+  for (std::uint32_t i = 0; i < triangles.size(); ++i) {
+    for (VertexId v : triangles[i].vertices) boxes[i].extend(vertices.position(v));
+    if (is_fresh[i] == 0) {
+      order.push_back(i);
+    } else {
+      fresh.push_back(i);
+      fresh_boxes.push_back(boxes[i]);
     }
   }
+  const BoxTree tree(fresh_boxes);
+  for (const std::uint32_t k : tree.items()) order.push_back(fresh[k]);
+  constexpr std::size_t kBlock = 1024, kMostInBlock = 64 * kBlock;
+  auto found = gather<TrianglePair>(context, order.size(), kBlock, [&](std::size_t at, std::vector<TrianglePair>& out) {
+    if (out.size() >= kMostInBlock) return;
+    const std::uint32_t i = order[at];
+    std::vector<std::uint32_t> near;
+    tree.overlaps(boxes[i], near);
+    for (const std::uint32_t k : near) {
+      const std::uint32_t j = fresh[k];
+      if (is_fresh[i] != 0 && j <= i) continue;
+      if (triangles_cross(vertices, triangles[i].vertices, triangles[j].vertices))
+        out.emplace_back(std::min(i, j), std::max(i, j));
+    }
+  });
+  std::sort(found.begin(), found.end());
+  if (found.size() > limit) found.resize(limit);
+  return found;
+}
 
-  const VertexStore& vertices_;
-  const std::vector<SurfaceTriangle>& triangles_;
-  std::vector<Box3> boxes_;
-  std::vector<std::uint32_t> order_;
-  std::vector<Node> nodes_;
-};
-
-}  // namespace
-
-std::vector<std::pair<std::uint32_t, std::uint32_t>> crossing_pairs(const VertexStore& vertices,
-                                                                    const std::vector<SurfaceTriangle>& triangles,
-                                                                    std::size_t limit) {
-  return TriangleTree(vertices, triangles).crossings(limit);
+std::vector<TrianglePair> crossing_pairs(const VertexStore& vertices, const std::vector<SurfaceTriangle>& triangles,
+                                         const Context& context) {
+  const std::vector<char> all(triangles.size(), 1);
+  return crossing_pairs(vertices, triangles, all, std::numeric_limits<std::size_t>::max(), context);
 }
 
 }  // namespace curvetet

@@ -3,10 +3,10 @@
 
 #include <array>
 #include <cstdint>
-#include <limits>
 #include <utility>
 #include <vector>
 
+#include "base/context.h"
 #include "conjoint/surface_meshes.h"
 #include "mesh/vertex_store.h"
 #include "spatial/triangles_cross.h"
@@ -28,10 +28,14 @@ std::vector<SurfaceTriangle> surface_triangles(const FaceMesh& mesh, FaceId face
 using FacetKey = std::array<std::uint32_t, 3>;
 FacetKey facet_key(VertexId a, VertexId b, VertexId c);
 
-/// Pairs (i < j) of triangles that cross, sorted; no more than `limit`. Bounding volume hierarchy, then the exact test;
-/// O(n log n + pairs).
-std::vector<std::pair<std::uint32_t, std::uint32_t>> crossing_pairs(
-    const VertexStore& vertices, const std::vector<SurfaceTriangle>& triangles,
-    std::size_t limit = std::numeric_limits<std::size_t>::max());
+using TrianglePair = std::pair<std::uint32_t, std::uint32_t>;
+
+/// Pairs (i < j) of triangles that cross, sorted. Bounding volume hierarchy, then the exact test; O(n log n + pairs).
+std::vector<TrianglePair> crossing_pairs(const VertexStore& vertices, const std::vector<SurfaceTriangle>& triangles,
+                                         const Context& context);
+/// Those of which one at least is fresh; no more than `limit`, nor than 64 times their number of triangles in any
+/// stretch of a thousand. Time in proportion to the number of triangles, and n log n for the fresh ones.
+std::vector<TrianglePair> crossing_pairs(const VertexStore& vertices, const std::vector<SurfaceTriangle>& triangles,
+                                         const std::vector<char>& is_fresh, std::size_t limit, const Context& context);
 
 }  // namespace curvetet

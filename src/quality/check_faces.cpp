@@ -11,7 +11,7 @@
 #include <limits>
 #include <numbers>
 
-#include "quality/box_tree.h"
+#include "base/box_tree.h"
 #include "quality/measures.h"
 #include "quality/model_checks.h"
 

@@ -9,9 +9,9 @@
 
 #include <algorithm>
 
+#include "base/box_tree.h"
 #include "base/gather.h"
 #include "mesh/tet_complex.h"
-#include "quality/box_tree.h"
 #include "quality/checks.h"
 #include "quality/exact.h"
 #include "quality/point_tree.h"

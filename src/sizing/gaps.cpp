@@ -30,8 +30,8 @@
 #include <limits>
 #include <map>
 
+#include "base/box_tree.h"
 #include "sizing/closest_pair.h"
-#include "sizing/patch_tree.h"
 
 namespace curvetet::sizing {
 
@@ -98,7 +98,7 @@ struct Scene {
   const GapInput& input;
   std::vector<FaceBorder> borders;
   std::vector<const Patch*> patches;
-  PatchTree tree;
+  BoxTree tree;
 };
 
 /// Where a chord could leave the boundary: a point of a face or edge, and the direction in which it bends.
@@ -158,7 +158,7 @@ class GapSearch {
     std::vector<std::uint32_t> candidates;
     if (!curved(patch)) return;
     const double reach = 2 * reach_of(patch.curvature, size_at(patch));
-    scene_.tree.near(patch.box, reach, candidates);
+    scene_.tree.overlaps(grown(patch.box, reach), candidates);
     probes_ = 0;
     search(patch, candidates);
   }
@@ -174,7 +174,8 @@ class GapSearch {
     box.extend(to.point);
     const double length = distance(from.point, to.point);
     std::vector<std::uint32_t> candidates;
-    scene_.tree.near(box, 2 * reach_of(curvature, size) + 0.125 * curvature * length * length, candidates);
+    const double reach = 2 * reach_of(curvature, size) + 0.125 * curvature * length * length;
+    scene_.tree.overlaps(grown(box, reach), candidates);
     const ModelEdge& edge = scene_.input.model.edges[id];
     std::erase_if(candidates, [&](std::uint32_t i) {
       return std::binary_search(edge.faces.begin(), edge.faces.end(), scene_.patches[i]->face);
@@ -469,7 +470,7 @@ Scene make_scene(const GapInput& input) {
       patches.push_back(&patch);
       boxes.push_back(patch.box);
     }
-  return {input, borders(input.model), std::move(patches), PatchTree(std::move(boxes))};
+  return {input, borders(input.model), std::move(patches), BoxTree(boxes)};
 }
 
 /// A run of consecutive patches of the scene, or of samples of one edge.

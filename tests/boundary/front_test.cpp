@@ -118,7 +118,7 @@ TEST(Front, LongEllipsoidIsNotFoldedAtItsPoles) {
   ASSERT_TRUE(sizes.ok());
   const Front front = mesh_front(model, sizes.value());
   const BoundaryMesh& mesh = front.result.mesh;
-  EXPECT_TRUE(crossing_pairs(front.vertices, surface_triangles(mesh)).empty());
+  EXPECT_TRUE(crossing_pairs(front.vertices, surface_triangles(mesh), Context()).empty());
   for (const SurfaceTriangle& t : surface_triangles(mesh)) {
     Vec3 centroid{};
     for (VertexId v : t.vertices) centroid = centroid + (1.0 / 3) * front.vertices.position(v);

@@ -225,8 +225,29 @@ TEST(Crossings, CoarseThinShellsWithoutGapSizesAreCured) {
     ASSERT_FALSE(HasFailure());
     EXPECT_GT(run->crossings.first_pairs, 0u);
     EXPECT_TRUE(run->crossings.failures.empty()) << "wall " << wall;
-    EXPECT_TRUE(crossing_pairs(run->vertices, surface_triangles(run->boundary)).empty());
+    EXPECT_TRUE(crossing_pairs(run->vertices, surface_triangles(run->boundary), Context()).empty());
   }
+}
+
+// What is asked for some triangles alone is what a look at all of them says of these.
+TEST(Crossings, OfFreshTrianglesAreThoseWithOneOfThem) {
+  BoundaryRunOptions options{8, 0};
+  options.gaps = false;
+  options.until = Until::faces;
+  const auto run = run_boundary(make_pierced_ball(5, 1, 14), options);
+  ASSERT_FALSE(HasFailure());
+  const std::vector<SurfaceTriangle> triangles = surface_triangles(run->boundary);
+  const auto all = crossing_pairs(run->vertices, triangles, Context());
+  ASSERT_FALSE(all.empty());
+  for (const std::uint32_t stride : {1U, 2U, 7U, 1000000U}) {
+    std::vector<char> is_fresh(triangles.size(), 0);
+    for (std::size_t i = 0; i < triangles.size(); i += stride) is_fresh[i] = 1;
+    std::vector<TrianglePair> expected;
+    for (const TrianglePair& pair : all)
+      if (is_fresh[pair.first] != 0 || is_fresh[pair.second] != 0) expected.push_back(pair);
+    EXPECT_EQ(crossing_pairs(run->vertices, triangles, is_fresh, all.size(), Context()), expected) << stride;
+  }
+  EXPECT_EQ(crossing_pairs(run->vertices, triangles, std::vector<char>(triangles.size(), 1), 1, Context()).size(), 1U);
 }
 
 // Refinement does not separate what crosses indeed, and stops long before the floor of spacing is reached everywhere.
@@ -269,7 +290,7 @@ TEST(Crossings, OfFacesThatPassThroughEachOtherAreToldAlone) {
   options.until = Until::faces;
   const auto before = run_boundary(model, options);
   const auto triangles = surface_triangles(before->boundary);
-  const auto pairs = crossing_pairs(before->vertices, triangles);
+  const auto pairs = crossing_pairs(before->vertices, triangles, Context());
   const auto crosses = [&](FaceId face) {
     return std::any_of(pairs.begin(), pairs.end(), [&](const auto& pair) {
       return triangles[pair.first].face == face || triangles[pair.second].face == face;

@@ -6,7 +6,6 @@
 #include <limits>
 #include <random>
 
-#include "quality/box_tree.h"
 #include "quality/exact.h"
 #include "quality/point_tree.h"
 
@@ -86,42 +85,6 @@ TEST(Exact, SegmentMeetsTriangle) {
   EXPECT_FALSE(meets({3, 0, 0}, {5, 0, 0}));         // on a side's line
   EXPECT_FALSE(meets({-1, 0.5, 0}, {-0.5, 0.5, 0}));
   EXPECT_FALSE(meets({2, 1, 0}, {1, 2, 0}));
-}
-
-TEST(BoxTree, AgreesWithSearchingAll) {
-  std::mt19937 random(11);
-  std::uniform_real_distribution<double> unit(0, 1);
-  const auto point = [&] { return Vec3{unit(random), unit(random), unit(random)}; };
-  for (const std::size_t n : {0U, 1U, 5U, 300U}) {
-    std::vector<Box3> boxes(n);
-    std::vector<Vec3> centres;
-    for (Box3& box : boxes) {
-      centres.push_back(point());
-      box.extend(centres.back());
-      box.extend(centres.back() + 0.1 * point());
-    }
-    const BoxTree tree(boxes);
-    for (int i = 0; i < 50; ++i) {
-      Box3 query;
-      query.extend(point());
-      query.extend(point());
-      std::vector<std::uint32_t> found, expected;
-      tree.overlaps(query, found);
-      std::sort(found.begin(), found.end());
-      std::uint32_t nearest = UINT32_MAX;
-      const Vec3 p = point();
-      for (std::uint32_t j = 0; j < n; ++j) {
-        bool meet = true;
-        for (int k = 0; k < 3; ++k) {
-          meet = meet && boxes[j].low[k] <= query.high[k] && query.low[k] <= boxes[j].high[k];
-        }
-        if (meet) expected.push_back(j);
-        if (nearest == UINT32_MAX || norm2(centres[j] - p) < norm2(centres[nearest] - p)) nearest = j;
-      }
-      EXPECT_EQ(found, expected);
-      EXPECT_EQ(tree.nearest(p, [&](std::uint32_t j) { return norm2(centres[j] - p); }), nearest);
-    }
-  }
 }
 
 TEST(PointTree, AgreesWithSearchingAll) {

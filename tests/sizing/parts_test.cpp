@@ -10,7 +10,6 @@
 #include "sizing/curvature.h"
 #include "sizing/domain.h"
 #include "sizing/patch_model.h"
-#include "sizing/patch_tree.h"
 #include "support/bodies.h"
 #include "support/lip.h"
 #include "support/wriggle.h"
@@ -80,38 +79,6 @@ TEST(TrimmedDomain, LiftsByWholePeriods) {
       EXPECT_TRUE(domain.inside(lifted));
     }
   }
-}
-
-TEST(PatchTree, FindsWhatASearchOfAllFinds) {
-  std::mt19937 random(5);
-  std::uniform_real_distribution<double> coordinate(-0.5, 0.5), extent(0, 0.1);
-  const auto random_box = [&] {
-    const Vec3 low{coordinate(random), coordinate(random), coordinate(random)};
-    return Box3{low, low + Vec3{extent(random), extent(random), extent(random)}};
-  };
-  std::vector<Box3> boxes(500);
-  for (Box3& box : boxes) box = random_box();
-  const sizing::PatchTree tree(boxes);
-  for (int i = 0; i < 100; ++i) {
-    const Box3 box = random_box();
-    const double reach = extent(random);
-    std::vector<std::uint32_t> found, naive;
-    tree.near(box, reach, found);
-    std::sort(found.begin(), found.end());
-    for (std::uint32_t k = 0; k < boxes.size(); ++k) {
-      bool near = true;
-      for (int axis = 0; axis < 3; ++axis)
-        near = near && boxes[k].low[axis] <= box.high[axis] + reach && box.low[axis] <= boxes[k].high[axis] + reach;
-      if (near) naive.push_back(k);
-    }
-    EXPECT_EQ(found, naive);
-  }
-}
-
-TEST(PatchTree, EmptyFindsNothing) {
-  std::vector<std::uint32_t> found;
-  sizing::PatchTree({}).near({{0, 0, 0}, {1, 1, 1}}, 1, found);
-  EXPECT_TRUE(found.empty());
 }
 
 TEST(ClosestPair, OfTwoBallsIsOnTheLineOfCentres) {

@@ -1,4 +1,5 @@
-// A tree of axis-aligned boxes over a fixed set of items: overlaps and nearest items. Built once, read by any thread.
+// A bounding volume hierarchy over a fixed set of items: which meet a box, and which is nearest. Built once, read by
+// any thread.
 #pragma once
 
 #include <cstdint>
@@ -14,7 +15,10 @@ class BoxTree {
   /// Items are numbered as the boxes; deterministic.
   explicit BoxTree(const std::vector<Box3>& boxes);
 
-  /// Appends the items whose boxes meet the query (closed boxes), in the tree's fixed order.
+  /// All items in the tree's order: what is near is likely to be near in it.
+  const std::vector<std::uint32_t>& items() const { return items_; }
+
+  /// Appends the items whose boxes meet the query (closed boxes), in the tree's order.
   void overlaps(const Box3& query, std::vector<std::uint32_t>& items) const;
 
   /// The item nearest to a point under `distance2` (squared distance from the point to the item, at least that to its

@@ -1,7 +1,7 @@
 // Split at the median of the box centres along the longest side of their extent: balanced, so the depth is bounded
 // whatever the input, and good enough that the exact tests dominate. A surface-area heuristic was not worth its build
 // time here.
-#include "quality/box_tree.h"
+#include "base/box_tree.h"
 
 #include <algorithm>
 #include <array>
