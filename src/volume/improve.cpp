@@ -121,9 +121,10 @@ class Improvement {
     return stopped_;
   }
 
-  /// Works on all bad tets, then on those near what was changed: elsewhere the same attempts would fail again.
+  /// Works on all bad tets when first called, then on those near what was changed, here or elsewhere: the same attempts
+  /// at others would fail again.
   void reconnect_and_smooth() {
-    bad_ = below_;
+    bad_.swap(pending_);
     for (int sweep = 0; sweep < kSweeps && !stopped_ && !bad_.empty(); ++sweep) {
       touched_.clear();
       reconnect();
@@ -134,12 +135,14 @@ class Improvement {
       collect_bad_near_touched();
       below_.insert(below_.end(), bad_.begin(), bad_.end());
     }
+    pending_ = bad_;
     tidy_below();
   }
 
   /// Of all tets, those below the goal. From here on only what is near a change has to be looked at.
   void collect_below() {
     below_ = all_inside([this](TetId t) { return quality(t) < goal_; });
+    pending_ = below_;
   }
 
   /// The tets inside that are asked for, ascending.
@@ -160,6 +163,7 @@ class Improvement {
   void refresh_below() {
     collect_bad_near_touched();
     below_.insert(below_.end(), bad_.begin(), bad_.end());
+    pending_.insert(pending_.end(), bad_.begin(), bad_.end());
     touched_.clear();
     tidy_below();
   }
@@ -428,7 +432,8 @@ class Improvement {
   VertexInsertion insertion_;
   double goal_;
   bool stopped_ = false;
-  std::vector<TetId> below_;  ///< all tets below the goal, ascending, between the steps
+  std::vector<TetId> below_;    ///< all tets below the goal, ascending, between the steps
+  std::vector<TetId> pending_;  ///< that were made, or have a changed neighbour, since they were last worked on
   std::vector<TetId> bad_, star_;
   std::vector<VertexId> touched_, movable_;
   IndexedVector<VertexId, char> is_touched_;
