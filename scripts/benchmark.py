@@ -37,14 +37,14 @@ def parse_arguments():
 
 
 def measure(command):
-    """Seconds by the clock, and megabytes at most."""
+    """Seconds by the clock, megabytes at most, and seconds of processors, of helpers too."""
     start = time.monotonic()
     with subprocess.Popen([str(word) for word in command], stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL) as process:
         _, status, usage = os.wait4(process.pid, 0)
         process.returncode = os.waitstatus_to_exitcode(status)
     if process.returncode != 0:
         sys.exit(f"failed with {process.returncode}: {' '.join(str(word) for word in command)}")
-    return time.monotonic() - start, usage.ru_maxrss / 1000
+    return time.monotonic() - start, usage.ru_maxrss / 1000, usage.ru_utime + usage.ru_stime
 
 
 class Benchmark:
@@ -92,7 +92,7 @@ class Benchmark:
                 measured[name].append(measure(command))
                 if name in own:
                     stages[name].append({s["stage"]: s["seconds"] for s in read_json(self.report(own[name]))["stages"]})
-        base = statistics.median(seconds for seconds, _ in measured["curvetet"])
+        base = statistics.median(seconds for seconds, _, _ in measured["curvetet"])
         for name, command in commands.items():
             seconds, memory = (statistics.median(run[i] for run in measured[name]) for i in (0, 1))
             tets, ratio, angle = self.quality(command[command.index("-o") + 1])

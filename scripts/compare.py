@@ -128,10 +128,10 @@ def table(rows, divisors, names, missing):
     return lines
 
 
-def write_page(page, lines):
-    """Replaces what is between the markers."""
+def write_page(page, lines, name="table"):
+    """Replaces what is between the markers of that name."""
     text = page.read_text()
-    begin, end = "<!-- table: begin -->", "<!-- table: end -->"
+    begin, end = f"<!-- {name}: begin -->", f"<!-- {name}: end -->"
     head, rest = text.split(begin)
     page.write_text(head + begin + "\n" + "\n".join(lines) + "\n" + end + rest.split(end)[1])
 

@@ -5,7 +5,8 @@
 // is needed. The minimum is found by branch and bound in a kd-tree whose nodes store their box and their least size: a
 // subtree whose least size, grown over the distance to its box, is not below the best value so far holds no better
 // cone. Sources that lie on or above the cone of another are dropped before the tree for queries is built; "is implied
-// by" is transitive (triangle inequality), so all can be tested against the full set at once.
+// by" is transitive (triangle inequality), so all can be tested against the full set at once, and those that were there
+// before against the new ones alone.
 //
 // Rejected: a background octree with gradation by propagation (its resolution shows in the field, and it must be
 // rebuilt when the outer loop adds a source).
@@ -158,18 +159,24 @@ SizeField::SizeField(const std::vector<SizeSource>& sources, const SizingOptions
 
 void SizeField::add(const std::vector<SizeSource>& more) {
   std::vector<Cone> cones;
-  if (tree_) cones = tree_->cones;
   for (SizeSource source : more) {
     if (is_derived(source.reason)) source.size = std::max(source.size, options_.min_size);
     if (!(source.size > 0) || !finite(source.where)) continue;
     sources_.push_back(source);
     if (source.size < options_.size) cones.push_back({source.where, source.size});
   }
-  const Tree full(distinct(std::move(cones)));
+  if (!tree_) tree_ = std::make_shared<const Tree>(std::vector<Cone>());
+  const Tree fresh(distinct(std::move(cones)));
+  const auto is_implied = [this](const Tree& by, const Cone& cone) {
+    return by.lowest(cone.where, options_.grading, cone.size) < cone.size;
+  };
   std::vector<Cone> kept;
-  for (const Cone& cone : full.cones)
-    if (full.lowest(cone.where, options_.grading, options_.size) >= cone.size) kept.push_back(cone);
-  tree_ = std::make_shared<const Tree>(std::move(kept));
+  for (const Cone& cone : fresh.cones)
+    if (!is_implied(fresh, cone) && !is_implied(*tree_, cone)) kept.push_back(cone);
+  if (kept.empty()) return;
+  for (const Cone& cone : tree_->cones)
+    if (!is_implied(fresh, cone)) kept.push_back(cone);
+  tree_ = std::make_shared<const Tree>(distinct(std::move(kept)));
 }
 
 void SizeField::spread_limits(const Model& model) {
