@@ -293,6 +293,8 @@ bool flip_improves(const Corner& a, const Corner& b, const Corner& c, const Corn
   const FacetPair now{facet(a, b, c), facet(b, a, d)}, then{facet(a, d, c), facet(d, b, c)};
   const int flat_now = count_flat(now), flat_then = count_flat(then);
   if (flat_then != flat_now) return flat_then < flat_now;
+  // Four corners in a line: no angle says anything, but with the shorter edge each is nearer to a neighbour.
+  if (flat_now == 2) return distance(c.q, d.q) < (1 - kFlipMargin) * distance(a.q, b.q);
   const int upright_now = count_upright(now, on), upright_then = count_upright(then, on);
   if (order == FlipOrder::upright_first && upright_then != upright_now) return upright_then < upright_now;
   const bool pole = at_pole(a) || at_pole(b) || at_pole(c) || at_pole(d);

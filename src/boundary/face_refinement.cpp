@@ -1,5 +1,10 @@
 // Delaunay refinement on a surface (Chew, "Guaranteed-quality mesh generation for curved surfaces", 1993) with the size
-// field in place of the circumradius bound. All corners (position, derivatives, normal, size) are kept in flat arrays
+// field in place of the circumradius bound, as a front (Rebay, "Efficient unstructured mesh generation by means of
+// Delaunay triangulation and Bowyer-Watson algorithm", 1993): of the triangles that are too large those go first that
+// lie beside what is finished, and the new point makes an equilateral triangle over the edge between. Points at centres
+// of balls alone give valid meshes, too, but angles of forty degrees where these are of sixty.
+//
+// All corners (position, derivatives, normal, size) are kept in flat arrays
 // by node, so that the surface is evaluated for new points only. Splitting a curve because a point encroaches it, as
 // Ruppert does, was rejected here: curves follow the size field already, and a point that is refused leaves a triangle
 // at most a little too large.
@@ -9,7 +14,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <numbers>
+#include <limits>
 #include <queue>
 
 #include "boundary/criteria.h"
@@ -27,13 +32,23 @@ constexpr double kLongEdge = 1.4;          ///< an edge over size that is split 
 constexpr double kEncroachHeight = 0.45;   ///< distance over size within which a diametral sphere counts
 constexpr std::size_t kLargestCavity = 64;
 constexpr int kLastRounds = 4;
-constexpr double kWraps = 1.1;  ///< an arc over its chord, just below that of a quarter turn
+constexpr double kLeastHeight = 0.6;  ///< of a new triangle over the front, over size
+constexpr double kNoFarther = 1.02;   ///< a centre's distance over that height up to which it is as good
+constexpr double kOffHeight = 0.05;   ///< of a point at the front, over the height, that asks for another try
+constexpr double kWraps = 1.1;        ///< an arc over its chord, just below that of a quarter turn
 
 enum class Need : std::uint8_t { none, shape, fold, size, bend };
 
 struct Verdict {
   Need need = Need::none;
   double worth = 0;  ///< larger is worse
+};
+
+/// What is known of a triangle slot.
+struct Progress {
+  enum class State : std::uint8_t { finished, waits, queued } state = State::finished;
+  std::uint32_t stamp = 0;  ///< entries with an older one are stale
+  double worth = 0;
 };
 
 struct Entry {
@@ -129,22 +144,74 @@ class FaceRefiner {
   }
 
   void empty_queue(const Context& context) {
-    for (std::size_t step = 0; !queue_.empty(); ++step) {
+    for (std::size_t step = 0; !queue_.empty() || open_front(); ++step) {
       if (step % 256 == 0 && context.should_stop()) return;
       const Entry entry = queue_.top();
       queue_.pop();
-      if (entry.stamp == stamps_[entry.triangle]) refine(TriangleId(entry.triangle));
+      if (entry.stamp != progress_[entry.triangle].stamp) continue;
+      const TriangleId t(entry.triangle);
+      if (!refine(t)) finish(t);
     }
   }
 
+  /// Judges them. What is too large waits until it lies at the front, all else that is wrong does not.
   void enqueue(const std::vector<TriangleId>& triangles) {
-    stamps_.resize(mesh_.triangle_slots(), 0);
+    progress_.resize(mesh_.triangle_slots());
     for (const TriangleId t : triangles) {
-      ++stamps_[t.value()];
+      Progress& progress = progress_[t.value()];
+      progress.state = State::finished;
+      ++progress.stamp;
       if (!mesh_.triangle(t).alive()) continue;
       const Verdict verdict = judge(t, true);
-      if (verdict.need != Need::none) queue_.push({verdict.worth, t.value(), stamps_[t.value()]});
+      progress.worth = verdict.worth;
+      if (verdict.need == Need::size) {
+        progress.state = State::waits;
+      } else if (verdict.need != Need::none) {
+        push(t);
+      }
     }
+    for (const TriangleId t : triangles) {
+      if (!mesh_.triangle(t).alive()) continue;
+      if (state(t) == State::waits && front_edge(mesh_.triangle(t))) push(t);
+      if (state(t) == State::finished) finish(t);
+    }
+  }
+
+  using State = Progress::State;
+  State state(TriangleId t) const { return progress_[t.value()].state; }
+
+  void push(TriangleId t) {
+    Progress& progress = progress_[t.value()];
+    progress.state = State::queued;
+    queue_.push({progress.worth, t.value(), progress.stamp});
+  }
+
+  /// Nothing is to be done there, or can be: what waits beside it is at the front now.
+  void finish(TriangleId t) {
+    progress_[t.value()].state = State::finished;
+    for (const TriangleId n : mesh_.triangle(t).neighbour)
+      if (n.valid() && state(n) == State::waits) push(n);
+  }
+
+  /// All that waits goes on where there is no front, as on a closed surface. False: nothing does.
+  bool open_front() {
+    for (const TriangleId t : alive())
+      if (state(t) == State::waits) push(t);
+    return !queue_.empty();
+  }
+
+  /// The shortest edge of a triangle on the boundary or beside what is finished.
+  std::optional<std::size_t> front_edge(const FaceTriangle& t) const {
+    double shortest2 = std::numeric_limits<double>::infinity();
+    std::optional<std::size_t> found;
+    for (std::size_t i = 0; i < 3; ++i) {
+      if (t.use[i] == -1 && t.neighbour[i].valid() && state(t.neighbour[i]) != State::finished) continue;
+      const double length2 = norm2(corner(t.node[(i + 1) % 3]).position - corner(t.node[(i + 2) % 3]).position);
+      if (length2 >= shortest2) continue;
+      shortest2 = length2;
+      found = i;
+    }
+    return found;
   }
 
   double size_of(const FaceTriangle& t) const {
@@ -184,13 +251,14 @@ class FaceRefiner {
   /// Edges to a pole are flipped when they are askew; points on them would only come nearer to the pole.
   static bool must_split(const Corner& a, const Corner& b) { return !at_pole(a) && !at_pole(b) && bent(a, b); }
 
-  void refine(TriangleId id) {
+  /// False: nothing was wrong, or nothing could be done.
+  bool refine(TriangleId id) {
     Verdict verdict = judge(id, true);
     if (verdict.need == Need::bend) {
-      if (split_bent(id)) return;
+      if (split_bent(id)) return true;
       verdict = judge(id, false);
     }
-    if (verdict.need == Need::none) return;
+    if (verdict.need == Need::none) return false;
     const FaceTriangle t = mesh_.triangle(id);
     std::array<Vec2, 3> q;
     std::array<Vec3, 3> p;
@@ -202,8 +270,36 @@ class FaceRefiner {
     if (!centre) {
       if (const auto other = metric_centre(surface_, mesh_.chart, q)) centre = evaluate(*other);
     }
-    if (centre && insert(*centre, id, verdict.need)) return;
-    if (verdict.need != Need::shape) split_longest(id, verdict.need);
+    if (centre && verdict.need == Need::size) {
+      const auto at_front = point_at_front(t, *centre);
+      if (at_front && insert(*at_front, id, verdict.need)) return true;
+    }
+    if (centre && insert(*centre, id, verdict.need)) return true;
+    return verdict.need != Need::shape && split_longest(id, verdict.need);
+  }
+
+  /// The point over the front's edge, towards the centre, at the distance of one size from the edge's ends; nothing
+  /// where there is no front, or the centre is no farther.
+  std::optional<FacePoint> point_at_front(const FaceTriangle& t, const FacePoint& centre) const {
+    const std::optional<std::size_t> at = front_edge(t);
+    if (!at) return std::nullopt;
+    const NodeId m = t.node[(*at + 1) % 3], n = t.node[(*at + 2) % 3];
+    const double size = 0.5 * (size_at_[m.value()] + size_at_[n.value()]);
+    const Vec3 middle = 0.5 * (corner(m).position + corner(n).position);
+    const double half2 = norm2(corner(m).position - middle);
+    const double height = std::sqrt(std::max(size * size - half2, kLeastHeight * kLeastHeight * size * size));
+    const double far = distance(middle, centre.at.value);
+    if (far < kNoFarther * height) return std::nullopt;
+    const Vec2 from = 0.5 * (corner(m).q + corner(n).q);
+    const auto on_the_way = [&](double share) {
+      const Vec2 q = from + share * (centre.q - from);
+      return evaluate({snap(q.x), snap(q.y)});
+    };
+    const FacePoint first = on_the_way(height / far);
+    const double reached = distance(first.at.value, middle);
+    // The chart is stretched on the way: once more, unless the surface bends back.
+    if (std::abs(reached - height) < kOffHeight * height || reached < 0.5 * height) return first;
+    return on_the_way(std::min(1.0, height / far * height / reached));
   }
 
   FacePoint evaluate(Vec2 q) const { return {q, surface_.first(mesh_.chart.to_uv(q))}; }
@@ -236,7 +332,7 @@ class FaceRefiner {
   }
 
   /// A point at the middle of the longest edge that may be split, if it is too long or is what is wrong.
-  void split_longest(TriangleId id, Need need) {
+  bool split_longest(TriangleId id, Need need) {
     const FaceTriangle t = mesh_.triangle(id);
     double best = 0;
     std::size_t at = 3;
@@ -248,8 +344,8 @@ class FaceRefiner {
         at = i;
       }
     }
-    if (at == 3 || (need == Need::size && best < kLongEdge * size_of(t))) return;
-    insert(evaluate(middle_of(corner(t.node[(at + 1) % 3]), corner(t.node[(at + 2) % 3]))), id, need);
+    if (at == 3 || (need == Need::size && best < kLongEdge * size_of(t))) return false;
+    return insert(evaluate(middle_of(corner(t.node[(at + 1) % 3]), corner(t.node[(at + 2) % 3]))), id, need);
   }
 
   /// Least distance to other nodes: the cure of a fold or a bent edge may be as close as the geometry itself forces it
@@ -270,7 +366,7 @@ class FaceRefiner {
     if (!holder) return false;
     const Vec3 position = snap(point.at.value);
     const double size = sizes_.at_face(face_, position);
-    if (crowded(position, *holder, from, spacing(mesh_.triangle(from), need, size), size)) return false;
+    if (crowded(position, point, *holder, from, spacing(mesh_.triangle(from), need, size), size)) return false;
     if (mesh_.judge_insert(point.q, *holder) != PlanarRefusal::none) return false;
     const VertexId vertex(static_cast<std::uint32_t>(kLocalVertices + added_.size()));
     const FaceNode node{vertex, point.q};
@@ -285,7 +381,7 @@ class FaceRefiner {
 
   /// Too close to a node, or within the diametral sphere of a segment, among the triangles whose spheres hold the
   /// point.
-  bool crowded(Vec3 p, TriangleId holder, TriangleId from, double spacing, double size) {
+  bool crowded(Vec3 p, const FacePoint& point, TriangleId holder, TriangleId from, double spacing, double size) {
     cavity_.assign(1, holder);
     if (from != holder) cavity_.push_back(from);
     for (std::size_t k = 0; k < cavity_.size(); ++k) {
@@ -298,12 +394,23 @@ class FaceRefiner {
           continue;
         }
         const TriangleId n = t.neighbour[i];
-        // Across an edge of the holder a node may be as near as the point is to the edge, in whatever triangle.
-        if (!n.valid() || cavity_.size() >= kLargestCavity || (k > 1 && !in_sphere(n, p))) continue;
+        if (!n.valid() || cavity_.size() >= kLargestCavity) continue;
+        // Across an edge a node may be as near as the point is to the edge, in whatever triangle.
+        const Vec2 qa = corner(t.node[(i + 1) % 3]).q, qb = corner(t.node[(i + 2) % 3]).q;
+        if (k > 1 && !is_near_edge(point, qa, qb, spacing) && !in_sphere(n, p)) continue;
         if (std::find(cavity_.begin(), cavity_.end(), n) == cavity_.end()) cavity_.push_back(n);
       }
     }
     return false;
+  }
+
+  /// On the surface: the chord of a long edge may pass far from a point beside it.
+  bool is_near_edge(const FacePoint& point, Vec2 a, Vec2 b, double near) const {
+    const Vec2 along = b - a;
+    const double share = std::clamp(dot(point.q - a, along) / dot(along, along), 0.0, 1.0);
+    const Vec2 off = point.q - a - share * along;
+    const Vec3 in_space = (off.x / mesh_.chart.scale_u) * point.at.du + (off.y / mesh_.chart.scale_v) * point.at.dv;
+    return norm2(in_space) < near * near;
   }
 
   static bool encroaches(Vec3 p, Vec3 a, Vec3 b, double size) {
@@ -329,9 +436,9 @@ class FaceRefiner {
   FaceMesh::FlipWanted wanted_;
   FlipOrder order_ = FlipOrder::bends_first;
   double usual_segment_ = 0;
-  std::vector<Corner> corners_;        ///< by node
-  std::vector<double> size_at_;        ///< by node
-  std::vector<std::uint32_t> stamps_;  ///< by triangle: entries with an older stamp are stale
+  std::vector<Corner> corners_;     ///< by node
+  std::vector<double> size_at_;     ///< by node
+  std::vector<Progress> progress_;  ///< by triangle
   std::priority_queue<Entry> queue_;
   std::vector<AddedVertex> added_;
   std::vector<TriangleId> changed_, cavity_;

@@ -74,6 +74,18 @@ TEST(FlipImproves, NoFlipOnlyBecauseACornerIsOnALip) {
   }
 }
 
+// On a line of the chart, but for rounding, angles are noise; the shorter edge leads to neighbours that are joined.
+TEST(FlipImproves, OfCornersInALineJoinsWhatIsNear) {
+  const auto on_line = [](double y, double off, std::uint32_t vertex) {
+    return corner_at(kLip, {0.2 + off, y}, vertex);
+  };
+  const Corner a = on_line(0, 0, 0), b = on_line(0.5, 0, 1), c = on_line(0.2, -1e-12, 2), d = on_line(0.3, 1e-12, 3);
+  for (const FlipOrder order : {FlipOrder::bends_first, FlipOrder::upright_first}) {
+    EXPECT_TRUE(flip_improves(a, b, c, d, order, kOnLip));
+    EXPECT_FALSE(flip_improves(c, d, b, a, order, kOnLip));
+  }
+}
+
 TEST(Folded, ATriangleWithACornerOnALipIsNot) {
   const Corner a = corner_at(kLip, {-0.5, 0}, 0), b = corner_at(kLip, {0, 0.2}, 1), c = corner_at(kLip, {-0.5, 0.5}, 2);
   EXPECT_FALSE(folded(a, b, c, kOnLip));

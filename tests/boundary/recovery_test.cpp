@@ -308,8 +308,10 @@ TEST(Crossings, OfFacesThatPassThroughEachOtherAreToldAlone) {
 // The certificate says which facets of T_Γ are not those of t_3d; here that is found by comparing the two.
 TEST(Certificate, TellsWhatTheMarchBroughtIn) {
   std::size_t brought_in = 0;
-  for (double size : {0.8, 0.5, 0.35}) {
-    const Model model = make_cylinder(2, 5);
+  for (const auto& [model, size] : {std::pair{make_cylinder(2, 5), 4.0},
+                                    {make_half_ellipsoid(1, 2), 1.0},
+                                    {make_half_ellipsoid(1, 2), 0.6},
+                                    {make_tube(3, 2.5, 4), 2.0}}) {
     BoundaryRunOptions options{size, 12};
     options.until = Until::tets;
     const auto run = run_boundary(model, options);

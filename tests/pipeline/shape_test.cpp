@@ -8,6 +8,7 @@
 #include <BRepPrimAPI_MakeBox.hxx>
 #include <BRepPrimAPI_MakeCylinder.hxx>
 #include <BRepPrimAPI_MakePrism.hxx>
+#include <BRepPrimAPI_MakeTorus.hxx>
 #include <BRep_Builder.hxx>
 #include <BinTools.hxx>
 #include <TopExp.hxx>
@@ -180,6 +181,23 @@ TEST(MeshOfAShape, TouchesItselfWhereTheShapeDoes) {
     EXPECT_TRUE(std::any_of(healing.begin(), healing.end(), [](const std::string& note) {
       return note.find("where the body touches itself") != std::string::npos;
     })) << size;
+  }
+}
+
+// Edges between the rims of a spline's patches were split on lines of one parameter, where triangles lay flat on each
+// other.
+TEST(MeshOfAShape, FineTorusOfSplinesHasNoCrossings) {
+  const TopoDS_Shape torus = BRepBuilderAPI_NurbsConvert(BRepPrimAPI_MakeTorus(6, 2).Shape());
+  for (const double size : {0.5, 0.23}) {
+    Options options;
+    options.size = size;
+    options.refine_interior = false;
+    options.improve = false;
+    Context context;
+    const Result<MeshOutput> made = mesh(torus, options, context);
+    ASSERT_TRUE(made) << made.error().message;
+    EXPECT_TRUE(made.value().report.valid);
+    EXPECT_EQ(made.value().report.recovery.crossings, 0U) << size;
   }
 }
 
