@@ -26,14 +26,14 @@ std::vector<std::size_t> by_area(const Model& model) {
 }
 
 Status refine_faces(const Model& model, const SizeField& sizes, VertexStore& vertices, BoundaryMesh& mesh,
-                    Context& context) {
+                    const BoundaryOptions& options, Context& context) {
   const std::vector<std::size_t> order = by_area(model);
   std::vector<std::vector<AddedVertex>> added(order.size());
   parallel_for(context, order.size(), [&](std::size_t i) {
     const FaceId face(order[i]);
     if (context.should_stop() || mesh.faces[face].triangle_count() == 0) return;
     const std::unique_ptr<Surface> surface = model.faces[face].surface->clone();
-    added[face.value()] = refine_face(mesh.faces[face], face, *surface, sizes, vertices, context);
+    added[face.value()] = refine_face(mesh.faces[face], face, *surface, sizes, vertices, options.smooth_faces, context);
   });
   if (context.should_stop()) return context.stop_error("face meshes");
   std::vector<VertexId> first;
@@ -62,7 +62,7 @@ Result<BoundaryResult> mesh_boundary(const Model& model, const SizeField& sizes,
     return status.error();
   }
   if (options.refine_faces) {
-    if (const Status status = refine_faces(model, sizes, vertices, mesh, context); !status) {
+    if (const Status status = refine_faces(model, sizes, vertices, mesh, options, context); !status) {
       return status.error();
     }
   }

@@ -18,6 +18,7 @@
 #include <queue>
 
 #include "boundary/criteria.h"
+#include "boundary/face_smoothing.h"
 
 namespace curvetet {
 
@@ -77,7 +78,7 @@ class FaceRefiner {
     };
   }
 
-  std::vector<AddedVertex> run(const Context& context) {
+  std::vector<AddedVertex> run(bool smooth, const Context& context) {
     if (wraps()) {
       order_ = FlipOrder::on_surface;
       enqueue(alive());
@@ -95,6 +96,7 @@ class FaceRefiner {
       enqueue(changed_);
       empty_queue(context);
     }
+    if (smooth) move_nodes(context);
     return std::move(added_);
   }
 
@@ -131,6 +133,13 @@ class FaceRefiner {
       }
     }
     return false;
+  }
+
+  void move_nodes(const Context& context) {
+    const std::size_t first = corners_.size() - added_.size();
+    smooth_face(mesh_, NodeId(first), corners_, {surface_, mesh_.chart}, wanted_, context);
+    for (std::size_t k = 0; k < added_.size(); ++k)
+      added_[k] = {corners_[first + k].position, mesh_.chart.to_uv(corners_[first + k].q)};
   }
 
   const Corner& corner(NodeId n) const { return corners_[n.value()]; }
@@ -447,8 +456,8 @@ class FaceRefiner {
 }  // namespace
 
 std::vector<AddedVertex> refine_face(FaceMesh& mesh, FaceId face, const Surface& surface, const SizeField& sizes,
-                                     const VertexStore& vertices, const Context& context) {
-  return FaceRefiner(mesh, face, surface, sizes, vertices).run(context);
+                                     const VertexStore& vertices, bool smooth, const Context& context) {
+  return FaceRefiner(mesh, face, surface, sizes, vertices).run(smooth, context);
 }
 
 }  // namespace curvetet

@@ -139,6 +139,10 @@ class FaceMesh {
   void restore(std::span<const TriangleId> from, const FlipWanted& wanted, std::vector<TriangleId>& changed);
   void restore(const FlipWanted& wanted, std::vector<TriangleId>& changed);  ///< from all triangles
 
+  /// Moves a node without constrained edges, if all triangles around it turn left then. False, and nothing changed,
+  /// otherwise. The criterion is not restored.
+  bool move_node(NodeId n, Vec2 q);
+
   /// Removes a node without constrained edges and fills its star without flips, then restores the criterion if one is
   /// given. False, and nothing changed, for any other node. The node keeps its number but is in no triangle.
   bool remove_node(NodeId n, const FlipWanted& wanted, std::vector<TriangleId>& changed);

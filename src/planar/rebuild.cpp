@@ -1,4 +1,4 @@
-// Larger changes of connectivity: a node taken out, all triangles replaced, new loops under old interior nodes.
+// Larger changes: a node moved or taken out, all triangles replaced, new loops under old interior nodes.
 #include <algorithm>
 
 #include "planar/corners.h"
@@ -24,6 +24,20 @@ const DirectedEdge* find_directed(const std::vector<DirectedEdge>& sorted, NodeI
 }
 
 }  // namespace
+
+bool FaceMesh::move_node(NodeId n, Vec2 q) {
+  if (n.value() >= nodes_.size()) return false;
+  star(n, scratch_);
+  for (const TriangleId t : scratch_) {
+    const FaceTriangle& f = triangles_[t];
+    const int i = f.node[0] == n ? 0 : f.node[1] == n ? 1 : 2;
+    if (f.use[next(i)] != -1 || f.use[previous(i)] != -1) return false;
+    if (orient2d(q, point(f.node[next(i)]), point(f.node[previous(i)])) <= 0) return false;
+  }
+  if (scratch_.empty()) return false;
+  nodes_[n].q = q;
+  return true;
+}
 
 bool FaceMesh::remove_node(NodeId n) {
   std::vector<TriangleId> changed;

@@ -39,8 +39,8 @@ TEST(FaceRefinement, MakesTrianglesNearEquilateral) {
         shortest = std::min(shortest, distance(p[i], p[(i + 1) % 3]));
       }
     }
-    EXPECT_GT(sum / static_cast<double>(triangles.size()), 0.95);
-    EXPECT_GT(worst, 0.4);
+    EXPECT_GT(sum / static_cast<double>(triangles.size()), 0.97);
+    EXPECT_GT(worst, 0.55);
     EXPECT_LT(longest, 1.6 * size);
     EXPECT_GT(shortest, 0.35 * size);
   }

@@ -95,6 +95,7 @@ TEST(FacetFallback, OfFacesThatCrossIsAFailureThatNamesBoth) {
 TEST(FacetFallback, ComesOnceTheRoundsGaveOutWhereAllowed) {
   const Model model = make_half_ellipsoid(1, 6);  // flips and filling alone leave two facets of it
   BoundaryRunOptions options{5, 12};
+  options.smooth = false;
   options.recovery.rounds = 0;
   const auto failed = run_boundary(model, options);
   ASSERT_FALSE(HasFailure());

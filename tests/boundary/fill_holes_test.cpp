@@ -19,6 +19,7 @@ struct Counts {
 std::unique_ptr<BoundaryRun> tetrahedralized(const Model& model, double size) {
   BoundaryRunOptions options{size, 0};
   options.until = Until::tets;
+  options.smooth = false;  // or hardly anything is missing
   return run_boundary(model, options);
 }
 

@@ -97,6 +97,7 @@ INSTANTIATE_TEST_SUITE_P(Bodies, PaperRecovery, testing::ValuesIn(cases()),
 PaperCounts paper_counts(const Model& model, double size) {
   BoundaryRunOptions options{size, 12};
   options.as_paper = true;
+  options.smooth = false;
   return run_boundary(model, options)->paper;
 }
 
@@ -170,6 +171,7 @@ TEST(PaperCounts, CaseTwoRefinesEdgesUsedTooOften) {
     BoundaryRunOptions options{30, 0};
     options.until = Until::tets;
     options.as_paper = true;
+    options.smooth = false;
     const auto run = run_boundary(model, options);
     ASSERT_FALSE(HasFailure());
     if (!spoil(model, run->boundary)) continue;

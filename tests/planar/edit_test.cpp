@@ -284,6 +284,41 @@ TEST(Remove, InteriorNodesOnly) {
   EXPECT_NEAR(area(mesh), before, 1e-12);
 }
 
+TEST(Move, OnlyWithinWhatSeesTheWholeLink) {
+  FaceMesh mesh = built(plate());
+  std::vector<TriangleId> changed, around;
+  std::mt19937 random(7);
+  std::uniform_real_distribution<double> coordinate(-0.45, 0.45);
+  std::vector<NodeId> inserted;
+  for (std::uint32_t k = 0; k < 60; ++k) {
+    const Vec2 q = on_grid({coordinate(random), coordinate(random)});
+    const auto holder = mesh.locate(q);
+    if (!holder) continue;
+    const NodeId n = mesh.insert(VertexId(500 + k), q, *holder, {}, changed);
+    if (n.valid()) inserted.push_back(n);
+  }
+  ASSERT_GT(inserted.size(), 20U);
+  std::size_t moved = 0, refused = 0;
+  for (int step = 0; step < 2000; ++step) {
+    const NodeId n = inserted[static_cast<std::size_t>(step) % inserted.size()];
+    const Vec2 before = mesh.node(n).q, reach{0.2 * coordinate(random), 0.2 * coordinate(random)};
+    const Vec2 q = on_grid({before.x + reach.x, before.y + reach.y});
+    mesh.star(n, around);
+    const bool sees_all = std::all_of(around.begin(), around.end(), [&](TriangleId t) {
+      const auto& nodes = mesh.triangle(t).node;
+      const auto at = [&](std::size_t i) { return nodes[i] == n ? q : mesh.node(nodes[i]).q; };
+      return orient2d(at(0), at(1), at(2)) > 0;
+    });
+    EXPECT_EQ(mesh.move_node(n, q), sees_all);
+    EXPECT_EQ(mesh.node(n).q, sees_all ? q : before);
+    ++(sees_all ? moved : refused);
+  }
+  EXPECT_GT(std::min(moved, refused), 100U);
+  expect_valid(mesh);
+  EXPECT_FALSE(mesh.move_node(NodeId(0U), mesh.node(NodeId(0U)).q)) << "a node of the boundary";
+  EXPECT_FALSE(mesh.move_node(NodeId(123456U), {}));
+}
+
 TEST(Replace, AcceptsOnlyTheSameDomain) {
   FaceMesh mesh = built(plate());
   const std::size_t count = mesh.triangle_count();

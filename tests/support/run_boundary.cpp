@@ -43,7 +43,9 @@ void run_stages(const Model& model, const BoundaryRunOptions& options, BoundaryR
   auto sizes = make_size_field(model, sizing, context);
   ASSERT_TRUE(sizes.ok()) << sizes.error().message;
   run.sizes = std::move(sizes.value());
-  auto front = mesh_boundary(model, run.sizes, run.vertices, BoundaryOptions{}, context);
+  BoundaryOptions front_options;
+  front_options.smooth_faces = options.smooth;
+  auto front = mesh_boundary(model, run.sizes, run.vertices, front_options, context);
   ASSERT_TRUE(front.ok()) << front.error().message;
   for (const FaceFailure& f : front.value().failures) ADD_FAILURE() << f.cause << ": " << f.detail;
   run.boundary = std::move(front.value().mesh);
