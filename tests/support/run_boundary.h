@@ -32,7 +32,7 @@ struct BoundaryRunOptions {
   double curvature = 12;
   bool gaps = true;
   bool as_paper = false;
-  bool smooth = true;  ///< off: face meshes of which the Delaunay tetrahedralization lacks more
+  bool smooth = true;                 ///< off: face meshes of which the Delaunay tetrahedralization lacks more
   FaceRecoveryOptions recovery = {};  ///< but for the floor
   int threads = 1;
   Until until = Until::classification;
