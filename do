@@ -98,6 +98,9 @@ bench() {
   build/bench/bench/make_bodies out/bodies
   python3 scripts/benchmark.py --body out/bodies/bulk.brep --sizes 0.0149 --curvetet build/bench/apps/curvetet/curvetet \
     --out out/benchmark --page docs/benchmarks.md
+  say "Surfaces"
+  python3 scripts/benchmark_surfaces.py --bodies out/bodies --curvetet build/bench/apps/curvetet/curvetet --out out/surfaces \
+    --page docs/benchmarks.md
 }
 
 format() { sources | xargs clang-format -i; }
