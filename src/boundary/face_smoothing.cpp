@@ -17,6 +17,7 @@ namespace curvetet {
 namespace {
 
 constexpr int kSweeps = 3;
+constexpr double kInfinite = std::numeric_limits<double>::infinity();
 constexpr double kGood = 1.04;    ///< inverse mean ratio of a triangle, 1 at best, up to which a node is left alone
 constexpr double kGain = 1e-3;    ///< least relative gain
 constexpr double kUpright = 0.8;  ///< cosine of a triangle to the surface below which no node is moved to
@@ -85,7 +86,8 @@ class FaceSmoothing {
     double sum = 0, worst = 0;
   };
 
-  /// Of the star with its node at `centre`; infinite where a triangle has no area or stands upright.
+  /// Of the star with its node at `centre`; infinite where a triangle has no area or stands upright, or the node is too
+  /// close to a curve.
   Energy energy_around(NodeId n, const Corner& centre) const {
     Energy energy;
     for (const TriangleId t : star_) {
@@ -93,11 +95,22 @@ class FaceSmoothing {
       const auto corner = [&](std::size_t i) -> const Corner& {
         return nodes[i] == n ? centre : corners_[nodes[i].value()];
       };
-      const double one = inverse_mean_ratio(corner(0), corner(1), corner(2));
+      const bool near_curve = encroaches_opposite(mesh_.triangle(t), n, centre);
+      const double one = near_curve ? kInfinite : inverse_mean_ratio(corner(0), corner(1), corner(2));
       energy.sum += one;
       energy.worst = std::max(energy.worst, one);
     }
     return energy;
+  }
+
+  /// Within the diametral sphere of a segment opposite: between its chord and its arc there may be no face below.
+  bool encroaches_opposite(const FaceTriangle& t, NodeId n, const Corner& centre) const {
+    for (std::size_t i = 0; i < 3; ++i) {
+      if (t.node[i] != n || t.use[i] == -1) continue;
+      const Vec3 a = corners_[t.node[(i + 1) % 3].value()].position, b = corners_[t.node[(i + 2) % 3].value()].position;
+      return dot(a - centre.position, b - centre.position) < 0;
+    }
+    return false;
   }
 
   static double inverse_mean_ratio(const Corner& a, const Corner& b, const Corner& c) {
@@ -105,7 +118,7 @@ class FaceSmoothing {
     const double twice_area = norm(normal);
     const Vec3 outward = a.normal + b.normal + c.normal;
     if (!(twice_area > 0) || degenerate(a, b, c) || dot(normal, outward) < kUpright * twice_area * norm(outward))
-      return std::numeric_limits<double>::infinity();
+      return kInfinite;
     return (norm2(ab) + norm2(ac) + norm2(ac - ab)) / (2 * std::sqrt(3.0) * twice_area);
   }
 
