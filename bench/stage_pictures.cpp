@@ -346,7 +346,9 @@ void draw_edges(const std::string& folder) {
 }
 
 void draw_march(const std::string& folder) {
-  const auto run = start(model_of(BRepPrimAPI_MakeCylinder(4, 10).Shape()), 2.5, 12);
+  const TopoDS_Shape tube =
+      BRepAlgoAPI_Cut(BRepPrimAPI_MakeCylinder(3, 4).Shape(), BRepPrimAPI_MakeCylinder(2.5, 4).Shape());
+  const auto run = start(model_of(tube), 3, 12);
   tetrahedralize(*run);
   const Shape before = surface(*run, [&](std::size_t, const SurfaceTriangle& t) {
     return run->tets->find_facet(t.vertices[0], t.vertices[1], t.vertices[2]) ? kPlain : kRed;
