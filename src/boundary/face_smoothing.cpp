@@ -18,9 +18,10 @@ namespace {
 
 constexpr int kSweeps = 3;
 constexpr double kInfinite = std::numeric_limits<double>::infinity();
-constexpr double kGood = 1.04;    ///< inverse mean ratio of a triangle, 1 at best, up to which a node is left alone
-constexpr double kGain = 1e-3;    ///< least relative gain
-constexpr double kUpright = 0.8;  ///< cosine of a triangle to the surface below which no node is moved to
+constexpr double kGood = 1.04;  ///< inverse mean ratio of a triangle, 1 at best, up to which a node is left alone
+constexpr double kGain = 1e-3;  ///< least relative gain
+constexpr double kLeastHeight = 0.75;  ///< over a segment, that a node keeps, over its length; equilateral: 0.87
+constexpr double kUpright = 0.8;       ///< cosine of a triangle to the surface below which no node is moved to
 
 class FaceSmoothing {
  public:
@@ -65,7 +66,8 @@ class FaceSmoothing {
       const SurfaceFirst at = on_.surface.first(on_.chart.to_uv(q));
       if (!finite(at.value)) return;
       const Corner there = make_corner({corners_[n.value()].vertex, q}, snap(at.value), at, on_.chart);
-      if (!(energy_around(n, there).sum < (1 - kGain) * now.sum) || !mesh_.move_node(n, q)) continue;
+      if (!(energy_around(n, there).sum < (1 - kGain) * now.sum)) continue;
+      if (nears_curve(n, corners_[n.value()].position, there.position) || !mesh_.move_node(n, q)) continue;
       corners_[n.value()] = there;
       touched_.insert(touched_.end(), star_.begin(), star_.end());
       return;
@@ -86,8 +88,7 @@ class FaceSmoothing {
     double sum = 0, worst = 0;
   };
 
-  /// Of the star with its node at `centre`; infinite where a triangle has no area or stands upright, or the node is too
-  /// close to a curve.
+  /// Of the star with its node at `centre`; infinite where a triangle has no area or stands upright.
   Energy energy_around(NodeId n, const Corner& centre) const {
     Energy energy;
     for (const TriangleId t : star_) {
@@ -95,20 +96,25 @@ class FaceSmoothing {
       const auto corner = [&](std::size_t i) -> const Corner& {
         return nodes[i] == n ? centre : corners_[nodes[i].value()];
       };
-      const bool near_curve = encroaches_opposite(mesh_.triangle(t), n, centre);
-      const double one = near_curve ? kInfinite : inverse_mean_ratio(corner(0), corner(1), corner(2));
+      const double one = inverse_mean_ratio(corner(0), corner(1), corner(2));
       energy.sum += one;
       energy.worst = std::max(energy.worst, one);
     }
     return energy;
   }
 
-  /// Within the diametral sphere of a segment opposite: between its chord and its arc there may be no face below.
-  bool encroaches_opposite(const FaceTriangle& t, NodeId n, const Corner& centre) const {
-    for (std::size_t i = 0; i < 3; ++i) {
-      if (t.node[i] != n || t.use[i] == -1) continue;
-      const Vec3 a = corners_[t.node[(i + 1) % 3].value()].position, b = corners_[t.node[(i + 2) % 3].value()].position;
-      return dot(a - centre.position, b - centre.position) < 0;
+  /// Nearer to a segment of a triangle around than it is, and than a front would have it. Between the chord and the arc
+  /// of a segment there may be no face below.
+  bool nears_curve(NodeId n, Vec3 here, Vec3 there) const {
+    for (const TriangleId t : star_) {
+      const FaceTriangle& f = mesh_.triangle(t);
+      for (std::size_t i = 0; i < 3; ++i) {
+        if (f.node[i] != n || f.use[i] == -1) continue;
+        const Vec3 a = corners_[f.node[(i + 1) % 3].value()].position,
+                   b = corners_[f.node[(i + 2) % 3].value()].position;
+        const double then = norm(cross(a - there, b - there));  // distance times length
+        if (then < kLeastHeight * norm2(b - a) && then < norm(cross(a - here, b - here))) return true;
+      }
     }
     return false;
   }
