@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "boundary/surface_triangles.h"
+#include "geometry/frame.h"
 #include "support/bodies.h"
 #include "support/run_boundary.h"
 
@@ -43,6 +44,32 @@ TEST(FaceRefinement, MakesTrianglesNearEquilateral) {
     EXPECT_GT(worst, 0.55);
     EXPECT_LT(longest, 1.6 * size);
     EXPECT_GT(shortest, 0.35 * size);
+  }
+}
+
+TEST(FaceRefinement, LeavesValidMeshesWithNodesOnTheirSurface) {
+  for (const bool smooth : {false, true}) {
+    for (const Model& model : {make_tube(4, 3, 5), make_ball(3), make_half_ellipsoid(3, 1), make_cone(3, 0, 4)}) {
+      BoundaryRunOptions options{0.6, 12};
+      options.until = Until::faces;
+      options.smooth = smooth;
+      const auto run = run_boundary(model, options);
+      ASSERT_FALSE(HasFailure());
+      std::size_t inside = 0;
+      for (std::size_t f = 0; f < model.faces.size(); ++f) {
+        const FaceMesh& mesh = run->boundary.faces[FaceId(f)];
+        EXPECT_EQ(mesh.check(), std::vector<std::string>{});
+        for (std::size_t n = 0; n < mesh.node_count(); ++n) {
+          const FaceNode& node = mesh.node(NodeId(n));
+          if (run->vertices.origin(node.vertex) != Origin::face_mesh) continue;
+          const Vec3 on_surface = model.faces[FaceId(f)].surface->value(mesh.chart.to_uv(node.q));
+          EXPECT_LE(distance(on_surface, run->vertices.position(node.vertex)), 2 * kGrid);
+          EXPECT_EQ(run->vertices.parameter(node.vertex), mesh.chart.to_uv(node.q));
+          ++inside;
+        }
+      }
+      EXPECT_GT(inside, 0U);
+    }
   }
 }
 
