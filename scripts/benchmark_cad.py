@@ -46,17 +46,17 @@ class CadBenchmark:
         return (read_json(out) or {}).get("counts", {}).get("tets") or None
 
     def matching_factor(self, body, size, wanted, mesh):
-        """The factor and gmsh's tets; (None, None) where gmsh fails with all sizes as they are, (None, tets) if there is none."""
+        """The factor and gmsh's tets with it. Without a factor the tets are those with all sizes as they are: none if gmsh fails so."""
         factor = 1.0
-        tets = self.tets(self.gmsh(body, size, factor, mesh), mesh)
+        first = tets = self.tets(self.gmsh(body, size, factor, mesh), mesh)
         for _ in range(ROUNDS):
             if tets is None:
-                return None, None
+                break
             if abs(tets / wanted - 1) <= NEAR:
                 return factor, tets
             factor *= (tets / wanted) ** (1 / 3)
             tets = self.tets(self.gmsh(body, size, factor, mesh), mesh)
-        return None, tets
+        return None, first
 
     def compare(self, body):
         mesh = self.a.out / "mesh.msh"

@@ -61,10 +61,8 @@ Result<BoundaryResult> mesh_boundary(const Model& model, const SizeField& sizes,
   if (const Status status = build_face_meshes(model, options, vertices, mesh, result.failures, context); !status) {
     return status.error();
   }
-  if (options.refine_faces) {
-    if (const Status status = refine_faces(model, sizes, vertices, mesh, options, context); !status) {
-      return status.error();
-    }
+  if (const Status status = refine_faces(model, sizes, vertices, mesh, options, context); !status) {
+    return status.error();
   }
   Conjoint conjoint(model, vertices, mesh,
                     [&](FaceId face) { return spatial_criterion(mesh.faces[face], vertices, model.faces[face]); });

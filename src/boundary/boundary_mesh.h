@@ -24,8 +24,7 @@ struct FaceFailure {
 
 struct BoundaryOptions {
   int loop_rounds = 12;      ///< splits of segments at fault before a face is given up
-  bool refine_faces = true;  ///< interior points to the size field
-  bool smooth_faces = true;  ///< these moved to better places; off: meshes that ask more of recovery
+  bool smooth_faces = true;  ///< points inside moved to better places; off: meshes that ask more of recovery
 };
 
 struct BoundaryResult {

@@ -21,7 +21,9 @@ namespace curvetet {
 
 namespace {
 
+// Of a triangle that is not there any more.
 constexpr std::uint32_t kGone = std::numeric_limits<std::uint32_t>::max();
+
 constexpr std::size_t kPointsPerPair = 8;
 // More crossings than this are no thin wall but a surface mesh gone wrong.
 constexpr std::size_t kPairsPerTriangle = 4;
@@ -55,27 +57,25 @@ class CrossingCure {
     for (result_.rounds = 0; result_.rounds <= options_.rounds; ++result_.rounds) {
       if (context_.should_stop()) return context_.stop_error("surface crossings");
       find_faults();
-      const std::vector<TrianglePair>& pairs = pairs_;
-      const std::vector<std::uint32_t>& folds = folds_;
       if (result_.rounds == 0) {
-        result_.first_pairs = pairs.size();
-        result_.first_folds = folds.size();
-        budget_ = budget_for(pairs);
+        result_.first_pairs = pairs_.size();
+        result_.first_folds = folds_.size();
+        budget_ = budget();
       }
       context_.log(LogLevel::debug, fmt::format("crossings, round {}: {} pairs of {} triangles", result_.rounds,
-                                                pairs.size(), triangles_.size()));
-      if (pairs.empty() && folds.empty()) return result_;
-      count_stalled(pairs.size() + folds.size());
+                                                pairs_.size(), triangles_.size()));
+      if (pairs_.empty() && folds_.empty()) return result_;
+      count_stalled(pairs_.size() + folds_.size());
       deviations_.assign(triangles_.size(), std::nullopt);
       const bool any_through =
-          std::any_of(pairs.begin(), pairs.end(), [this](const TrianglePair& p) { return through(p); });
+          std::any_of(pairs_.begin(), pairs_.end(), [this](const TrianglePair& p) { return through(p); });
       rounds_through_ = any_through ? rounds_through_ + 1 : 0;
       const bool hopeless = faces_cross() || result_.rounds == options_.rounds ||
                             static_cast<double>(result_.points) > budget_ ||
-                            pairs.size() >= kPairsPerTriangle * triangles_.size();
-      const bool progress = !hopeless && (thin_out(pairs, folds) || (refine(pairs) | unfold(folds)));
+                            pairs_.size() >= kPairsPerTriangle * triangles_.size();
+      const bool progress = !hopeless && (thin_out() || (refine() | unfold()));
       if (!progress) {
-        report_all(pairs, folds);
+        report_all();
         return result_;
       }
     }
@@ -132,16 +132,16 @@ class CrossingCure {
 
   /// A legal cure of a thin wall may need many times the points of the first mesh: as many as triangles of the floor's
   /// spacing cover what crosses. Slivers have no area, so that some points per pair and triangle are granted, too.
-  double budget_for(const std::vector<TrianglePair>& pairs) const {
+  double budget() const {
     std::set<std::uint32_t> crossing;
-    for (const auto& [i, j] : pairs) crossing.insert({i, j});
+    for (const auto& [i, j] : pairs_) crossing.insert({i, j});
     double area = 0;
     for (std::uint32_t i : crossing) {
       const auto at = [&](std::size_t k) { return conjoint_.vertices().position(triangles_[i].vertices[k]); };
       area += 0.5 * norm(cross(at(1) - at(0), at(2) - at(0)));
     }
     return area / (options_.floor * options_.floor) +
-           static_cast<double>(kPointsPerPair * pairs.size() + triangles_.size());
+           static_cast<double>(kPointsPerPair * pairs_.size() + triangles_.size());
   }
 
   bool still_there(const SurfaceTriangle& t) const {
@@ -206,7 +206,7 @@ class CrossingCure {
 
   /// Takes out nodes where a face overlaps itself in one sheet: facets that lie on it already do so because its
   /// parameters are sheared, and more points would only make more such facets.
-  bool thin_out(const std::vector<TrianglePair>& pairs, const std::vector<std::uint32_t>& folds) {
+  bool thin_out() {
     std::map<std::uint32_t, Lying> known;
     const auto lying_of = [&](std::uint32_t i) {
       const auto [at, is_new] = known.try_emplace(i);
@@ -214,14 +214,14 @@ class CrossingCure {
       return at->second;
     };
     bool any = false;
-    for (const auto& [i, j] : pairs) {
+    for (const auto& [i, j] : pairs_) {
       const SurfaceTriangle &a = triangles_[i], &b = triangles_[j];
       if (a.face != b.face || !still_there(a) || !still_there(b)) continue;
       const Lying one = lying_of(i), two = lying_of(j);
       if (!one.on_face || !two.on_face || dot(one.normal, two.normal) <= 0) continue;
       for (const SurfaceTriangle* t : {&a, &b}) any |= remove_nodes(*t);
     }
-    for (const std::uint32_t i : folds)
+    for (const std::uint32_t i : folds_)
       if (still_there(triangles_[i]) && lying_of(i).on_face) any |= remove_nodes(triangles_[i]);
     return any;
   }
@@ -238,9 +238,9 @@ class CrossingCure {
     return any;
   }
 
-  bool refine(const std::vector<TrianglePair>& pairs) {
+  bool refine() {
     bool any = false;
-    for (const auto& [i, j] : pairs) {
+    for (const auto& [i, j] : pairs_) {
       if (context_.should_stop()) return any;
       const SurfaceTriangle &a = triangles_[i], &b = triangles_[j];
       if (!still_there(a) || !still_there(b)) continue;
@@ -251,9 +251,9 @@ class CrossingCure {
     return any;
   }
 
-  bool unfold(const std::vector<std::uint32_t>& folds) {
+  bool unfold() {
     bool any = false;
-    for (std::uint32_t i : folds) {
+    for (std::uint32_t i : folds_) {
       const SurfaceTriangle& t = triangles_[i];
       if (!still_there(t) || !refine_triangle(conjoint_, t.face, t.triangle, refinement_).ok()) continue;
       ++result_.points;
@@ -305,11 +305,11 @@ class CrossingCure {
   }
 
   /// Where faces cross, that is the failure, whatever else is left.
-  void report_all(const std::vector<TrianglePair>& pairs, const std::vector<std::uint32_t>& folds) {
-    for (const TrianglePair& pair : pairs)
+  void report_all() {
+    for (const TrianglePair& pair : pairs_)
       if (!faces_cross() || through(pair)) report(pair.first, pair.second, "facets of the surface mesh cross");
     if (faces_cross()) return;
-    for (std::uint32_t i : folds) report(i, i, "a facet of the surface mesh is folded against its face");
+    for (std::uint32_t i : folds_) report(i, i, "a facet of the surface mesh is folded against its face");
   }
 
   void report(std::uint32_t i, std::uint32_t j, const char* what) {

@@ -375,7 +375,7 @@ class FaceRefiner {
     if (!holder) return false;
     const Vec3 position = snap(point.at.value);
     const double size = sizes_.at_face(face_, position);
-    if (crowded(position, point, *holder, from, spacing(mesh_.triangle(from), need, size), size)) return false;
+    if (crowded(point, *holder, from, spacing(mesh_.triangle(from), need, size), size)) return false;
     if (mesh_.judge_insert(point.q, *holder) != PlanarRefusal::none) return false;
     const VertexId vertex(static_cast<std::uint32_t>(kLocalVertices + added_.size()));
     const FaceNode node{vertex, point.q};
@@ -390,7 +390,8 @@ class FaceRefiner {
 
   /// Too close to a node, or within the diametral sphere of a segment, among the triangles whose spheres hold the
   /// point.
-  bool crowded(Vec3 p, const FacePoint& point, TriangleId holder, TriangleId from, double spacing, double size) {
+  bool crowded(const FacePoint& point, TriangleId holder, TriangleId from, double spacing, double size) {
+    const Vec3 p = snap(point.at.value);
     cavity_.assign(1, holder);
     if (from != holder) cavity_.push_back(from);
     for (std::size_t k = 0; k < cavity_.size(); ++k) {

@@ -2,8 +2,8 @@
 // the chart misleads, the step is halved once and then left. Where triangles lie folded, the mesh in space is not yet
 // that of the chart, and a better shape there may be farther from what recovery can have.
 //
-// Descent along the energy's gradient was not worth its derivatives: where a front has left a mesh near equilateral,
-// most nodes are told to stay by a look at their triangles.
+// Where a front has left a mesh near equilateral, most nodes are told to stay by a look at their triangles, so that
+// more than one evaluation of the surface is seldom made. Descent along the energy's gradient was not tried.
 #include "boundary/face_smoothing.h"
 
 #include <algorithm>
@@ -50,8 +50,7 @@ class FaceSmoothing {
       const FaceTriangle& t = mesh_.triangle(TriangleId(k));
       if (!t.alive()) continue;
       const Corner &a = corners_[t.node[0].value()], &b = corners_[t.node[1].value()], &c = corners_[t.node[2].value()];
-      const Vec3 normal = cross(b.position - a.position, c.position - a.position);
-      if (!degenerate(a, b, c) && dot(normal, a.normal + b.normal + c.normal) < 0) return true;
+      if (!degenerate(a, b, c) && alignment(a, b, c, on_) < 0) return true;
     }
     return false;
   }

@@ -36,15 +36,17 @@ class Fallback {
  private:
   bool refuse_crossings() {
     std::vector<SurfaceTriangle> triangles = surface_triangles(conjoint_.boundary().faces[face_], face_);
+    const std::size_t own = triangles.size();
     add_locked(triangles);
-    return report_crossings(triangles, "a facet crosses one of a face that is locked");
+    return report_crossings(triangles, own, "a facet crosses one of a face that is locked");
   }
 
-  /// One failure for each face whose facets cross those of this one, which come first.
-  bool report_crossings(const std::vector<SurfaceTriangle>& triangles, const char* what) {
+  /// One failure for each face whose facets cross those of this one, which are the first `own`.
+  bool report_crossings(const std::vector<SurfaceTriangle>& triangles, std::size_t own, const char* what) {
+    std::vector<char> is_own(triangles.size(), 0);
+    std::fill_n(is_own.begin(), own, 1);
     std::set<FaceId> told;
-    for (const auto& [i, j] : crossing_pairs(conjoint_.vertices(), triangles, context_)) {
-      if (triangles[i].face != face_) continue;
+    for (const auto& [i, j] : crossing_pairs(conjoint_.vertices(), triangles, is_own, kAllPairs, context_)) {
       const FaceId other = triangles[j].face;
       if (!told.insert(other).second) continue;
       RecoveryFailure failure = failure_at(triangles[i]);
@@ -84,7 +86,7 @@ class Fallback {
       const std::vector<SurfaceTriangle> others = surface_triangles(conjoint_.boundary().faces[FaceId(f)], FaceId(f));
       triangles.insert(triangles.end(), others.begin(), others.end());
     }
-    if (report_crossings(triangles, "a facet crosses one of another face")) return;
+    if (report_crossings(triangles, missing.size(), "a facet crosses one of another face")) return;
     RecoveryFailure failure = failure_at(missing.front());
     failure.what = fmt::format("{} facets are not recovered, not even one by one", missing.size());
     result_.failures.push_back(std::move(failure));

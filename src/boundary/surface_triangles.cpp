@@ -9,6 +9,13 @@
 
 namespace curvetet {
 
+namespace {
+
+/// Triangles that one thread looks at, and that are looked at before the pairs are counted.
+constexpr std::size_t kBlock = 1024, kStretch = 32 * kBlock;
+
+}  // namespace
+
 std::vector<SurfaceTriangle> surface_triangles(const FaceMesh& mesh, FaceId face) {
   std::vector<SurfaceTriangle> list;
   for (std::size_t t = 0; t < mesh.triangle_slots(); ++t) {
@@ -50,19 +57,24 @@ std::vector<TrianglePair> crossing_pairs(const VertexStore& vertices, const std:
   }
   const BoxTree tree(fresh_boxes);
   for (const std::uint32_t k : tree.items()) order.push_back(fresh[k]);
-  constexpr std::size_t kBlock = 1024, kMostInBlock = 64 * kBlock;
-  auto found = gather<TrianglePair>(context, order.size(), kBlock, [&](std::size_t at, std::vector<TrianglePair>& out) {
-    if (out.size() >= kMostInBlock) return;
-    const std::uint32_t i = order[at];
-    std::vector<std::uint32_t> near;
-    tree.overlaps(boxes[i], near);
-    for (const std::uint32_t k : near) {
-      const std::uint32_t j = fresh[k];
-      if (is_fresh[i] != 0 && j <= i) continue;
-      if (triangles_cross(vertices, triangles[i].vertices, triangles[j].vertices))
-        out.emplace_back(std::min(i, j), std::max(i, j));
-    }
-  });
+  // In stretches, so that little is found beyond the limit, and the same for any number of threads.
+  std::vector<TrianglePair> found;
+  for (std::size_t begin = 0; begin < order.size() && found.size() < limit; begin += kStretch) {
+    const std::size_t count = std::min(kStretch, order.size() - begin);
+    const auto more = gather<TrianglePair>(context, count, kBlock, [&](std::size_t at, std::vector<TrianglePair>& out) {
+      if (out.size() >= limit) return;
+      const std::uint32_t i = order[begin + at];
+      std::vector<std::uint32_t> near;
+      tree.overlaps(boxes[i], near);
+      for (const std::uint32_t k : near) {
+        const std::uint32_t j = fresh[k];
+        if (is_fresh[i] != 0 && j <= i) continue;
+        if (triangles_cross(vertices, triangles[i].vertices, triangles[j].vertices))
+          out.emplace_back(std::min(i, j), std::max(i, j));
+      }
+    });
+    found.insert(found.end(), more.begin(), more.end());
+  }
   std::sort(found.begin(), found.end());
   if (found.size() > limit) found.resize(limit);
   return found;
@@ -71,7 +83,7 @@ std::vector<TrianglePair> crossing_pairs(const VertexStore& vertices, const std:
 std::vector<TrianglePair> crossing_pairs(const VertexStore& vertices, const std::vector<SurfaceTriangle>& triangles,
                                          const Context& context) {
   const std::vector<char> all(triangles.size(), 1);
-  return crossing_pairs(vertices, triangles, all, std::numeric_limits<std::size_t>::max(), context);
+  return crossing_pairs(vertices, triangles, all, kAllPairs, context);
 }
 
 }  // namespace curvetet

@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstdint>
+#include <limits>
 #include <utility>
 #include <vector>
 
@@ -29,12 +30,13 @@ using FacetKey = std::array<std::uint32_t, 3>;
 FacetKey facet_key(VertexId a, VertexId b, VertexId c);
 
 using TrianglePair = std::pair<std::uint32_t, std::uint32_t>;
+inline constexpr std::size_t kAllPairs = std::numeric_limits<std::size_t>::max();
 
 /// Pairs (i < j) of triangles that cross, sorted. Bounding volume hierarchy, then the exact test; O(n log n + pairs).
 std::vector<TrianglePair> crossing_pairs(const VertexStore& vertices, const std::vector<SurfaceTriangle>& triangles,
                                          const Context& context);
-/// Those of which one at least is fresh; no more than `limit`, nor than 64 times their number of triangles in any
-/// stretch of a thousand. Time in proportion to the number of triangles, and n log n for the fresh ones.
+/// Those of which one at least is fresh; `limit` of them where there are as many. Time in proportion to the number of
+/// triangles, and n log n for the fresh ones.
 std::vector<TrianglePair> crossing_pairs(const VertexStore& vertices, const std::vector<SurfaceTriangle>& triangles,
                                          const std::vector<char>& is_fresh, std::size_t limit, const Context& context);
 

@@ -4,6 +4,7 @@
 // over triangles of the domain was rejected: it would take the mesh's own word for where the domain is.
 #include "geometry/enclosed_volume.h"
 
+#include <array>
 #include <cmath>
 
 namespace curvetet {

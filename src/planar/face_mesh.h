@@ -216,6 +216,7 @@ class FaceMesh {
   void place_on_edge(NodeId n, FaceEdge e, std::vector<TriangleId>& fan);
   void restore_around(std::vector<TriangleId>& changed, const FlipWanted& wanted);
   void await(FaceEdge e);
+  void await_edges(TriangleId t);
   void restore_awaiting(const FlipWanted& wanted, std::vector<TriangleId>& changed);
   void flip_star(NodeId n, std::vector<TriangleId>& fan, const FlipWanted& wanted);
   bool can_flip(FaceEdge e) const;

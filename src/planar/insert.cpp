@@ -169,16 +169,12 @@ bool FaceMesh::flip(FaceEdge edge) {
 
 // Adds what restoring touches to the triangles changed so far.
 void FaceMesh::restore_around(std::vector<TriangleId>& changed, const FlipWanted& wanted) {
-  for (const TriangleId t : changed) {
-    for (int i = 0; triangles_[t].alive() && i < 3; ++i) await({t, i});
-  }
+  for (const TriangleId t : changed) await_edges(t);
   restore_awaiting(wanted, changed);
 }
 
 void FaceMesh::restore(std::span<const TriangleId> from, const FlipWanted& wanted, std::vector<TriangleId>& changed) {
-  for (const TriangleId t : from) {
-    for (int i = 0; triangles_[t].alive() && i < 3; ++i) await({t, i});
-  }
+  for (const TriangleId t : from) await_edges(t);
   changed.clear();
   restore_awaiting(wanted, changed);
 }
@@ -192,6 +188,10 @@ void FaceMesh::restore(const FlipWanted& wanted, std::vector<TriangleId>& change
   }
   changed.clear();
   restore_awaiting(wanted, changed);
+}
+
+void FaceMesh::await_edges(TriangleId t) {
+  for (int i = 0; triangles_[t].alive() && i < 3; ++i) await({t, i});
 }
 
 void FaceMesh::await(FaceEdge e) {
@@ -214,7 +214,7 @@ void FaceMesh::restore_awaiting(const FlipWanted& wanted, std::vector<TriangleId
     if (!can_flip(w.edge) || !asked(mirror(w.edge))) {
       for (const TriangleId t : flip_at_pole(w.edge, wanted)) {
         changed.push_back(t);
-        for (int i = 0; i < 3; ++i) await({t, i});
+        await_edges(t);
         --budget;
       }
       continue;

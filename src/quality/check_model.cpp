@@ -199,11 +199,12 @@ void check_solids(const MeshOnModel& m, const std::vector<double>& volumes, cons
       area += m.model.faces[f].area;
       tolerance = std::max(tolerance, m.model.faces[f].tolerance);
     }
-    const double explained = 2 * slack[m.solids[s].value()] + area * std::max(m.least_limit, 10 * tolerance) +
-                             kVolumeError * std::abs(solid.volume);
+    const double forgiven = 2 * slack[m.solids[s].value()] + area * std::max(m.least_limit, 10 * tolerance);
+    const double explained = forgiven + kVolumeError * std::abs(solid.volume);
     if (solid.volume > 0 && off > explained && off > explained + volume_through_gaps(m.model, solid)) {
       const EnclosedVolume own = enclosed_volume(m.model, m.solids[s]);
-      const bool is_kernel_wrong = std::abs(volume - own.volume) + own.error <= explained;
+      const bool is_kernel_wrong =
+          std::abs(volume - own.volume) + own.error <= forgiven + kVolumeError * std::abs(own.volume);
       findings.add(is_kernel_wrong ? "cad_volume" : "volume", is_kernel_wrong ? Severity::warning : Severity::error,
                    [&] {
                      const double cubed = length * length * length;

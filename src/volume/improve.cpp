@@ -136,7 +136,7 @@ class Improvement {
       below_.insert(below_.end(), bad_.begin(), bad_.end());
     }
     pending_ = bad_;
-    tidy_below();
+    tidy(below_);
   }
 
   /// Of all tets, those below the goal. From here on only what is near a change has to be looked at.
@@ -153,10 +153,11 @@ class Improvement {
     });
   }
 
-  void tidy_below() {
-    std::erase_if(below_, [this](TetId t) { return !is_inside(t) || quality(t) >= goal_; });
-    std::sort(below_.begin(), below_.end());
-    below_.erase(std::unique(below_.begin(), below_.end()), below_.end());
+  /// Those of a list that are there and below the goal, ascending, each once.
+  void tidy(std::vector<TetId>& tets) const {
+    std::erase_if(tets, [this](TetId t) { return !is_inside(t) || quality(t) >= goal_; });
+    std::sort(tets.begin(), tets.end());
+    tets.erase(std::unique(tets.begin(), tets.end()), tets.end());
   }
 
   /// Changes near touched_ may have made more of them.
@@ -165,7 +166,8 @@ class Improvement {
     below_.insert(below_.end(), bad_.begin(), bad_.end());
     pending_.insert(pending_.end(), bad_.begin(), bad_.end());
     touched_.clear();
-    tidy_below();
+    tidy(below_);
+    tidy(pending_);
   }
 
   void collect_bad(double goal) {

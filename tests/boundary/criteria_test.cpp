@@ -84,6 +84,10 @@ TEST(FlipImproves, OfCornersInALineJoinsWhatIsNear) {
     EXPECT_TRUE(flip_improves(a, b, c, d, order, kOnLip));
     EXPECT_FALSE(flip_improves(c, d, b, a, order, kOnLip));
   }
+  // By the angles at c and d, of rounding errors' size, this one would be flipped.
+  const Corner near = on_line(0.3, 0, 1), beside = on_line(0.2, -1e-13, 2), far = on_line(0.6, 1e-12, 3);
+  for (const FlipOrder order : {FlipOrder::bends_first, FlipOrder::upright_first})
+    EXPECT_FALSE(flip_improves(a, near, beside, far, order, kOnLip));
 }
 
 TEST(Folded, ATriangleWithACornerOnALipIsNot) {

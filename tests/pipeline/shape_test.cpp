@@ -16,7 +16,9 @@
 #include <TopTools_IndexedMapOfShape.hxx>
 #include <TopoDS_Compound.hxx>
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
+#include <limits>
 #include <set>
 #include <sstream>
 
@@ -184,6 +186,16 @@ TEST(MeshOfAShape, TouchesItselfWhereTheShapeDoes) {
   }
 }
 
+double shortest_edge(const Mesh& mesh) {
+  double shortest = std::numeric_limits<double>::infinity();
+  for (const auto& t : mesh.triangles)
+    for (std::size_t i = 0; i < 3; ++i) {
+      const Point &a = mesh.points[t[i]], &b = mesh.points[t[(i + 1) % 3]];
+      shortest = std::min(shortest, std::hypot(a[0] - b[0], a[1] - b[1], a[2] - b[2]));
+    }
+  return shortest;
+}
+
 // Edges between the rims of a spline's patches were split on lines of one parameter, where triangles lay flat on each
 // other.
 TEST(MeshOfAShape, FineTorusOfSplinesHasNoCrossings) {
@@ -198,6 +210,7 @@ TEST(MeshOfAShape, FineTorusOfSplinesHasNoCrossings) {
     ASSERT_TRUE(made) << made.error().message;
     EXPECT_TRUE(made.value().report.valid);
     EXPECT_EQ(made.value().report.recovery.crossings, 0U) << size;
+    EXPECT_GT(shortest_edge(made.value().mesh), 0.1 * size);
   }
 }
 

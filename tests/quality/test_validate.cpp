@@ -341,6 +341,12 @@ std::vector<Mutation> mutations() {
       {"uncovered_face", true, error, spoil(small_ball, [](Sample& s) { s.model = test::make_shell(2, 1); })},
       {"face_without_triangles", true, error, spoil(small_ball, [](Sample& s) { s.model = test::make_shell(2, 1); })},
       {"volume", true, error, spoil(small_ball, [](Sample& s) { s.model = test::make_shell(2, 1.7); })},
+      {"volume", true, error,
+       spoil(small_ball,
+             [](Sample& s) {
+               s.model = test::make_shell(2, 1.7);
+               s.model.solids[SolidId(0U)].volume *= 1e6;  // what a kernel has wrong forgives nothing
+             })},
       {"label_not_in_cad", true, error, spoil(small_ball, [](Sample& s) { s.mesh.faces[0].cad_id = 12; })},
       {"edge_without_segments", true, error,
        spoil(small_cylinder, [](Sample& s) { s.mesh.segments.clear(), s.mesh.segment_edge.clear(); })},
