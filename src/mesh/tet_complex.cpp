@@ -87,7 +87,7 @@ void TetComplex::reorder(const std::vector<TetId>& order) {
   CURVETET_CHECK(order.size() == alive());
   std::vector<TetId> number(tets_.size());
   for (std::size_t k = 0; k < order.size(); ++k) number[order[k].value()] = TetId(k);
-  std::vector<Tet> sorted;
+  GrowingArray<Tet> sorted;
   sorted.reserve(order.size());
   for (const TetId t : order) {
     sorted.push_back(tets_[t.value()]);

@@ -7,9 +7,11 @@
 
 #include <array>
 #include <cstdint>
+#include <cstring>
 #include <unordered_map>
 #include <vector>
 
+#include "base/growing_array.h"
 #include "base/ids.h"
 
 namespace curvetet {
@@ -53,8 +55,13 @@ class TetComplex {
   std::size_t alive() const { return tets_.size() - free_.size(); }
   bool is_alive(TetId t) const { return tets_[t.value()].vertices[0].valid(); }
   bool is_ghost(TetId t) const {
-    const Vertices& v = tets_[t.value()].vertices;
-    return (v[0] == kInfinite) | (v[1] == kInfinite) | (v[2] == kInfinite) | (v[3] == kInfinite);
+    using Four [[gnu::vector_size(16)]] = std::uint32_t;
+    Four v;
+    std::memcpy(&v, &tets_[t.value()].vertices, sizeof(v));
+    const auto same = v == kInfinite.value();
+    std::array<std::uint64_t, 2> halves;
+    std::memcpy(&halves, &same, sizeof(same));
+    return (halves[0] | halves[1]) != 0;
   }
   const Vertices& vertices(TetId t) const { return tets_[t.value()].vertices; }
   const std::array<TetId, 4>& neighbours(TetId t) const { return tets_[t.value()].neighbours; }
@@ -128,7 +135,7 @@ class TetComplex {
   };
   FacetKey key(TetFacet f) const;
 
-  std::vector<Tet> tets_;
+  GrowingArray<Tet> tets_;
   std::uint32_t flood_ = 0;
   std::vector<std::uint32_t> free_;
   std::unordered_map<FacetKey, FaceId, FacetHash> locks_;  // looked up, never iterated

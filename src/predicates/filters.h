@@ -20,12 +20,18 @@ namespace curvetet::filters {
 
 inline constexpr int kUnknown = 2;  ///< what a rung returns when it cannot decide
 
+/// orient3d in double, not rounded where the insphere of the points and a fifth one is not (see Insphere::narrow): with
+/// XYZL below 2^46 g^5 and L at least g^2, XYZ is below 2^46 g^3.
+inline double orient3d_value(const Vec3& p, const Vec3& q, const Vec3& r) {
+  return p.x * (q.y * r.z - q.z * r.y) + p.y * (q.z * r.x - q.x * r.z) + p.z * (q.x * r.y - q.y * r.x);
+}
+
 /// Sign of orient3d, or kUnknown.
 inline int orient3d(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) {
   const Vec3 p = b - a;
   const Vec3 q = c - a;
   const Vec3 r = d - a;
-  const double det = p.x * (q.y * r.z - q.z * r.y) + p.y * (q.z * r.x - q.x * r.z) + p.z * (q.x * r.y - q.y * r.x);
+  const double det = orient3d_value(p, q, r);
   const double x = std::max(std::max(std::fabs(p.x), std::fabs(q.x)), std::fabs(r.x));
   const double y = std::max(std::max(std::fabs(p.y), std::fabs(q.y)), std::fabs(r.y));
   const double z = std::max(std::max(std::fabs(p.z), std::fabs(q.z)), std::fabs(r.z));

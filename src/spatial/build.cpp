@@ -6,10 +6,10 @@
 //
 // There are no locks yet, so that the cavity is known once it is grown. Its boundary is noted with all that the star
 // needs, and the star takes the cavity's own slots. The time goes into waiting for memory and into spheres: tets are
-// fetched ahead, and the spheres around one tet evaluated together (insphere_four.h).
+// fetched ahead, spheres evaluated in fours (insphere_four.h), and what is as likely as not done without branches.
 //
 // Rejected: one Hilbert order without rounds (quadratic on some inputs, e.g. points on two skew lines); large pages
-// (they take longer to clear than they save); growing without branches (most of what is written is not needed).
+// (they take longer to clear than they save).
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -167,69 +167,104 @@ class Builder {
 
   /// The finite tet of the last star whose vertices are nearest to p. On surfaces, where tets are long and thin, this
   /// saves most of the walk; elsewhere it costs no more than it saves.
-  TetId start_for(const Vec3& p) const {
+  TetId start_for(const Vec3& p) {
+    const std::span<const VertexId> names = star_builder_.names();
+    if (far_.size() < names.size()) far_.resize(2 * names.size());
+    for (std::size_t k = 0; k < names.size(); ++k) {
+      far_[k] = names[k] == kInfinite ? std::numeric_limits<double>::infinity()
+                                      : norm2(sites_[names[k].value()].position - p);
+    }
     TetId best = last_;
     double least = std::numeric_limits<double>::infinity();
     for (std::size_t k = 0; k < wall_count_; ++k) {
-      double sum = 0;
-      for (const VertexId v : walls_[k].vertices) sum += v == kInfinite ? least : norm2(sites_[v.value()].position - p);
-      if (sum >= least) continue;
-      least = sum;
-      best = tets_[k];
+      const auto [a, b, c] = star_builder_.wall_numbers()[k];
+      const double sum = far_[a] + far_[b] + far_[c];
+      best = sum < least ? tets_[k] : best;
+      least = std::min(least, sum);
     }
     return best;
   }
 
-  /// Fills tets_ and walls_.
+  /// Fills tets_ and walls_. Spheres wait until there are four of them, or no other tet of the cavity is left to look
+  /// around.
   void grow(TetId first, const Vec3& p, VertexId tie_id) {
     complex_.start_flood();
-    const std::uint32_t outside = complex_.flood() + kernel::kOutside, inside = complex_.flood() + kernel::kInside;
-    TetComplex::Tet* const all = complex_.tets();
-    all[first.value()].stamp = inside;
+    complex_.tets()[first.value()].stamp = complex_.flood() + kernel::kInside;
     tets_[0] = first;
     tet_count_ = 1;
+    asked_count_ = 0;
+    for (std::size_t looked = 0, answered = 0;;) {
+      make_room();
+      while (asked_count_ < answered + 4 && looked < tet_count_) ask_around(tets_[looked++]);
+      if (answered == asked_count_) break;
+      const std::size_t n = std::min<std::size_t>(4, asked_count_ - answered);
+      std::fill_n(asked_.data() + asked_count_, 4 - n, asked_[answered]);  // no lane is without a tet
+      take_in(std::span(asked_).subspan(answered).first<4>(), n, p, tie_id);
+      answered += n;
+      // Those that joined, mostly one or two: to count them would cost a mispredicted branch.
+      fetch_around(tets_[tet_count_ - 1]);
+      fetch_around(tets_[std::max<std::size_t>(tet_count_, 2) - 2]);
+    }
+    note_walls();
+  }
+
+  void fetch_around(TetId t) const {
+    for (const TetId id : complex_.neighbours(t)) complex_.prefetch(id);
+  }
+
+  /// Notes the neighbours that were not asked yet.
+  void ask_around(TetId t) {
+    TetComplex::Tet* const all = complex_.tets();
+    const std::uint32_t outside = complex_.flood() + kernel::kOutside;
+    for (const TetId id : all[t.value()].neighbours) {
+      TetComplex::Tet& next = all[id.value()];
+      asked_[asked_count_] = id;
+      asked_count_ += static_cast<std::size_t>(next.stamp < outside);
+      next.stamp = std::max(next.stamp, outside);
+    }
+  }
+
+  /// Those of the n tets that join the cavity.
+  void take_in(std::span<const TetId, 4> asked, std::size_t n, const Vec3& p, VertexId tie_id) {
+    const unsigned conflicts = kernel::conflicts_among(complex_, Sites{sites_.data()}, insphere_four_, asked,
+                                                       (1U << n) - 1, p, tie_id, exact_);
+    TetComplex::Tet* const all = complex_.tets();
+    for (std::size_t i = 0; i < 4; ++i) {
+      const unsigned joins = conflicts >> i & 1U;
+      tets_[tet_count_] = asked[i];
+      tet_count_ += joins;
+      all[asked[i].value()].stamp += joins * (kernel::kInside - kernel::kOutside);
+    }
+  }
+
+  /// Once the cavity is known. Where its boundary is, is noted before what is there: both loops are without branches.
+  void note_walls() {
+    const TetComplex::Tet* const all = complex_.tets();
+    const std::uint32_t inside = complex_.flood() + kernel::kInside;
+    if (facets_.size() < 4 * tet_count_) facets_.resize(8 * tet_count_);
     wall_count_ = 0;
     for (std::size_t k = 0; k < tet_count_; ++k) {
-      make_room();
-      const TetId t = tets_[k];
-      const TetComplex::Tet& tet = all[t.value()];
-      const unsigned conflicts = conflicts_around(tet, p, tie_id);
-      for (std::size_t i = 0; i < 4; ++i) {
-        const TetId id = tet.neighbours[i];
-        TetComplex::Tet& next = all[id.value()];
-        if (next.stamp == inside) continue;
-        if ((conflicts >> i & 1U) != 0) {
-          next.stamp = inside;
-          for (const TetId beyond : next.neighbours) complex_.prefetch(beyond);
-          tets_[tet_count_++] = id;
-          continue;
-        }
-        next.stamp = outside;
-        const std::array<TetId, 4>& back = next.neighbours;
-        kernel::Wall& wall = walls_[wall_count_++];
-        wall.outer = id;
-        wall.local = (back[1] == t) + 2 * (back[2] == t) + 3 * (back[3] == t);
-        for (std::size_t j = 0; j < 3; ++j) wall.vertices[j] = tet.vertices[static_cast<std::size_t>(kFacet[i][j])];
+      for (std::uint32_t i = 0; i < 4; ++i) {
+        facets_[wall_count_] = {tets_[k], i};
+        wall_count_ += static_cast<std::size_t>(all[all[tets_[k].value()].neighbours[i].value()].stamp != inside);
       }
     }
-  }
-
-  /// Which neighbours of a tet join the cavity now.
-  unsigned conflicts_around(const TetComplex::Tet& tet, const Vec3& p, VertexId tie_id) const {
-    const TetComplex::Tet* const all = complex_.tets();
-    unsigned fresh = 0;
-    for (std::size_t i = 0; i < 4; ++i) {
-      const TetComplex::Tet& next = all[tet.neighbours[i].value()];
-      fresh |= static_cast<unsigned>(next.stamp - complex_.flood() - kernel::kOutside > 1) << i;
+    if (walls_.size() < wall_count_) walls_.resize(2 * wall_count_);
+    for (std::size_t k = 0; k < wall_count_; ++k) {
+      const auto [t, i] = facets_[k];
+      const TetComplex::Tet& tet = all[t.value()];
+      kernel::Wall& wall = walls_[k];
+      wall.outer = tet.neighbours[i];
+      const std::array<TetId, 4>& back = all[wall.outer.value()].neighbours;
+      wall.local = (back[1] == t) + 2 * (back[2] == t) + 3 * (back[3] == t);
+      for (std::size_t j = 0; j < 3; ++j) wall.vertices[j] = tet.vertices[static_cast<std::size_t>(kFacet[i][j])];
     }
-    return kernel::conflicts_among(complex_, Sites{sites_.data()}, insphere_four_, tet.neighbours, fresh, p, tie_id,
-                                   exact_);
   }
 
-  /// For what one more tet of the cavity brings.
+  /// For four tets more in the cavity, and what is around them.
   void make_room() {
     if (tets_.size() < tet_count_ + 4) tets_.resize(2 * tets_.size());
-    if (walls_.size() < wall_count_ + 4) walls_.resize(2 * walls_.size());
+    if (asked_.size() < asked_count_ + 16) asked_.resize(2 * asked_.size());
   }
 
   /// Replaces the cavity by the star of v, in the cavity's own slots as far as they reach.
@@ -254,7 +289,10 @@ class Builder {
   // The cavity, then the star in its place: tet k of the star is behind wall k. Only the counted entries are in use.
   std::vector<TetId> tets_ = std::vector<TetId>(64);
   std::vector<kernel::Wall> walls_ = std::vector<kernel::Wall>(64);
-  std::size_t tet_count_ = 0, wall_count_ = 0;
+  std::vector<TetId> asked_ = std::vector<TetId>(64);  ///< each once, in the order in which they were met
+  std::vector<std::pair<TetId, std::uint32_t>> facets_;
+  std::size_t tet_count_ = 0, wall_count_ = 0, asked_count_ = 0;
+  std::vector<double> far_;  ///< squared distance of each vertex of the last boundary to the next point
 
   std::uint32_t infinite_ = 0;  ///< the number of the infinite vertex
 };

@@ -1,7 +1,11 @@
-// A star is glued along the edges of the cavity's boundary. Small boundaries, nearly all, number their vertices and
-// enter each new tet in a square table under its directed edges; the neighbour is under the reversed edge. Large ones
-// sort their edges. Neither looks at the old tets, so that stars of disjoint cavities can be made at the same time.
+// A star is glued along the edges of the cavity's boundary. Its vertices are numbered as they come, and each new tet
+// entered under its directed edges, in a square table or, where the numbers are too large for that, a hash table; the
+// neighbour is under the reversed edge. The old tets are not looked at, so that stars of disjoint cavities can be made
+// at the same time.
 #include "spatial/kernel.h"
+
+#include <algorithm>
+#include <bit>
 
 namespace curvetet::kernel {
 
@@ -43,16 +47,13 @@ void StarBuilder::replace(TetComplex& complex, VertexId v, std::span<const TetId
   star.resize(walls_.size());
 }
 
-void StarBuilder::glue_by_sorting(TetComplex& complex, std::span<const Wall> walls, std::span<const TetId> slots) {
-  edges_.clear();
-  for (std::size_t k = 0; k < walls.size(); ++k) {
-    for (std::size_t j = 0; j < 3; ++j) {
-      const auto [a, b] = std::minmax(walls[k].vertices[(j + 1) % 3], walls[k].vertices[(j + 2) % 3]);
-      edges_.push_back({{a, b}, {slots[k], static_cast<int>(j)}});
-    }
-  }
-  std::sort(edges_.begin(), edges_.end(), [](const Edge& a, const Edge& b) { return a.ends < b.ends; });
-  for (std::size_t k = 0; k + 1 < edges_.size(); k += 2) complex.glue(edges_[k].facet, edges_[k + 1].facet);
+void StarBuilder::make_room(std::size_t walls) {
+  // A sphere of F triangles has F / 2 + 2 vertices.
+  const std::size_t vertices = std::bit_ceil(std::max<std::size_t>(walls / 2 + 2, EdgeSquare::kMostVertices));
+  if (names_.size() < vertices) names_.resize(vertices);
+  if (wall_numbers_.size() < walls) wall_numbers_.resize(std::bit_ceil(walls));
 }
+
+void EdgeHash::start(std::size_t edges) { entries_.assign(std::bit_ceil(2 * edges), {}); }
 
 }  // namespace curvetet::kernel
