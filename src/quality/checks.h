@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "base/box_tree.h"
 #include "base/context.h"
 #include "curvetet/mesh.h"
 #include "geometry/model.h"
@@ -93,10 +94,22 @@ void check_triangles(const Mesh& mesh, Topology& topology, Findings& findings);
 /// Boundary of each solid closed; crowded edges and Euler characteristics are recorded.
 void check_closedness(const Mesh& mesh, const Model* model, Topology& topology, Findings& findings);
 
+/// Boxes of the boundary facets.
+struct BoundaryTree {
+  std::vector<Box3> boxes;
+  BoxTree tree;
+};
+BoundaryTree boundary_tree(const Mesh& mesh, const Topology& topology);
+
 /// Boundary facets meet only in shared vertices and edges (exact).
-void check_self_intersection(const Mesh& mesh, const Topology& topology, Context& context, Findings& findings);
-/// No vertex lies in or on a tet it does not belong to (exact).
-void check_overlap(const Mesh& mesh, const Topology& topology, Context& context, Findings& findings);
+void check_self_intersection(const Mesh& mesh, const Topology& topology, const BoundaryTree& tree, Context& context,
+                             Findings& findings);
+/// No vertex lies in or on a tet it does not belong to (exact). What was found before says whether that has a proof.
+void check_overlap(const Mesh& mesh, const Topology& topology, const BoundaryTree& tree, Context& context,
+                   Findings& findings);
+/// True if it is proved that no place off the facets is in two tets, for a mesh of positive tets whose facets have one
+/// tet, or two on opposite sides, and whose boundary facets do not meet. O(n log n) in the boundary facets.
+bool is_covered_once(const Mesh& mesh, const Topology& topology, const BoundaryTree& tree);
 
 /// Everything that needs the CAD: labels, vertices on their entities, folds, chains, coverage, volumes, Euler
 /// characteristics.

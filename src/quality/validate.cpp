@@ -3,7 +3,7 @@
 // causes at once.
 //
 // A mesh whose tets are positive, whose facets pair up on opposite sides, and whose boundary facets neither meet nor
-// leave a vertex inside a foreign tet is embedded: so pairwise tests of tets against tets are not needed.
+// lie within other tets is embedded: so pairwise tests of tets against tets are not needed.
 #include "quality/validate.h"
 
 #include <fmt/format.h>
@@ -122,6 +122,12 @@ QualitySummary summarize_quality(const Mesh& mesh, Context& context) {
   return summary;
 }
 
+void check_space(const Mesh& mesh, const Topology& topology, Context& context, Findings& findings) {
+  const BoundaryTree tree = boundary_tree(mesh, topology);
+  check_self_intersection(mesh, topology, tree, context, findings);
+  check_overlap(mesh, topology, tree, context, findings);
+}
+
 }  // namespace checks
 
 bool ValidationReport::valid() const {
@@ -145,8 +151,7 @@ ValidationReport validate(const Mesh& mesh, const Model* model, double unit_scal
     check_triangles(mesh, topology, findings);
     check_closedness(mesh, model, topology, findings);
     if (stopped()) return report;
-    check_self_intersection(mesh, topology, context, findings);
-    check_overlap(mesh, topology, context, findings);
+    check_space(mesh, topology, context, findings);
     if (stopped()) return report;
     report.solid_volumes = solid_volumes(mesh);
     report.quality = summarize_quality(mesh, context);
