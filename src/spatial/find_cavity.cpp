@@ -35,7 +35,8 @@ class CavitySearch {
         p_(p),
         cavity_(cavity),
         scratch_(scratch),
-        queue_(scratch.queue) {
+        queue_(scratch.queue),
+        asked_(scratch.asked) {
     cavity_.vertex = vertex;
     cavity_.tets.clear();
     cavity_.boundary.clear();
@@ -128,33 +129,41 @@ class CavitySearch {
     });
   }
 
-  /// Its boundary is known with it: what is around a tet is settled when the tet is looked at.
+  /// Spheres wait until there are four of them, or no other tet of the cavity is left to look around.
   void grow() {
-    for (std::size_t k = 0; k < cavity_.tets.size(); ++k) {
-      const TetId t = cavity_.tets[k];
-      const std::array<TetId, 4>& neighbours = complex_.neighbours(t);
-      unsigned asked = 0;
-      for (int i = 0; i < 4; ++i) {
-        const bool fresh =
-            marks_.state(neighbours[static_cast<std::size_t>(i)].value()) == 0 && !complex_.is_locked({t, i});
-        asked |= static_cast<unsigned>(fresh) << static_cast<unsigned>(i);
-      }
-      if (asked != 0) add_conflicts(neighbours, asked);
-      for (int i = 0; i < 4; ++i)
-        if (is_boundary(t, i)) cavity_.boundary.push_back({t, i});
+    asked_.clear();
+    for (std::size_t looked = 0, answered = 0;;) {
+      while (asked_.size() < answered + 4 && looked < cavity_.tets.size()) ask_around(cavity_.tets[looked++]);
+      if (answered == asked_.size()) break;
+      const std::size_t n = std::min<std::size_t>(4, asked_.size() - answered);
+      take_in(answered, n);
+      answered += n;
+    }
+    collect_boundary();
+  }
+
+  /// Notes the neighbours that were not asked yet.
+  void ask_around(TetId t) {
+    for (int i = 0; i < 4; ++i) {
+      const TetId next = complex_.neighbour(t, i);
+      if (complex_.is_locked({t, i}) || marks_.state(next.value()) != 0) continue;
+      marks_.set(next.value(), kernel::kOutside);
+      complex_.prefetch(next);
+      asked_.push_back(next);
     }
   }
 
-  void add_conflicts(const std::array<TetId, 4>& neighbours, unsigned asked) {
-    const unsigned conflicts =
-        kernel::conflicts_among(complex_, sites_, mesh_.insphere_four_, neighbours, asked, p_, vertex_, 0);
-    for (; asked != 0; asked &= asked - 1) {
-      const auto i = static_cast<unsigned>(std::countr_zero(asked));
-      const bool joins = (conflicts >> i & 1U) != 0;
-      marks_.set(neighbours[i].value(), joins ? kernel::kInside : kernel::kOutside);
-      if (!joins) continue;
-      for (const TetId beyond : complex_.neighbours(neighbours[i])) complex_.prefetch(beyond);
-      cavity_.tets.push_back(neighbours[i]);
+  /// Those of the asked tets from `first` on that join the cavity.
+  void take_in(std::size_t first, std::size_t n) {
+    std::array<TetId, 4> four;
+    for (std::size_t k = 0; k < 4; ++k) four[k] = asked_[first + std::min(k, n - 1)];  // no lane is without a tet
+    unsigned conflicts =
+        kernel::conflicts_among(complex_, sites_, mesh_.insphere_four_, four, (1U << n) - 1, p_, vertex_, 0);
+    for (; conflicts != 0; conflicts &= conflicts - 1) {
+      const TetId t = four[static_cast<std::size_t>(std::countr_zero(conflicts))];
+      marks_.set(t.value(), kernel::kInside);
+      cavity_.tets.push_back(t);
+      for (const TetId beyond : complex_.neighbours(t)) complex_.prefetch(beyond);
     }
   }
 
@@ -186,7 +195,9 @@ class CavitySearch {
         if (inside(complex_.neighbour(t, i))) queue_.push_back(complex_.neighbour(t, i));
       }
     }
-    if (cavity_.ok()) collect();
+    if (!cavity_.ok()) return;
+    std::erase_if(cavity_.tets, [&](TetId t) { return !inside(t); });
+    collect_boundary();
   }
 
   bool sees_all_boundary(TetId t) const {
@@ -201,11 +212,9 @@ class CavitySearch {
     return (infinite >= 0 && i != infinite) || kernel::side(complex_, sites_, t, i, p_) > 0;
   }
 
-  void collect() {
-    std::vector<TetId>& tets = cavity_.tets;
-    std::erase_if(tets, [&](TetId t) { return !inside(t); });
+  void collect_boundary() {
     cavity_.boundary.clear();
-    for (const TetId t : tets) {
+    for (const TetId t : cavity_.tets) {
       for (int i = 0; i < 4; ++i) {
         if (is_boundary(t, i)) cavity_.boundary.push_back({t, i});
       }
@@ -214,19 +223,15 @@ class CavitySearch {
 
   /// Takes the last found tet around a vertex or kept segment that would vanish out of the cavity; false if none would.
   bool remove_swallower() {
-    kernel::VertexSet& on_boundary = scratch_.boundary_vertices;
-    on_boundary.start(mesh_.vertices().size());
-    for (const TetFacet& f : cavity_.boundary) {
-      for (const VertexId v : complex_.facet_vertices(f)) {
-        if (v != kInfinite) on_boundary.insert(v);
-      }
-    }
+    number_boundary();
     for (auto t = cavity_.tets.rbegin(); t != cavity_.tets.rend(); ++t) {
+      int ends = 0;
       for (const VertexId v : complex_.vertices(*t)) {
-        const bool swallowed = v != kInfinite && !on_boundary.contains(v);
-        if (swallowed) return take_out(v, v);
+        if (v == kInfinite) continue;
+        if (scratch_.numbers.find(v.value()) == kernel::SmallNumbers::kNone) return take_out(v, v);
+        ends += static_cast<int>(mesh_.is_end_of_kept(v));
       }
-      if (std::popcount(ends_of_kept(*t)) < 2) continue;
+      if (ends < 2) continue;
       for (const auto& [i, j] : kEdge) {
         const VertexId a = complex_.vertex(*t, i);
         const VertexId b = complex_.vertex(*t, j);
@@ -236,14 +241,15 @@ class CavitySearch {
     return false;
   }
 
-  /// The tet's vertices in which kept segments end: a bit each.
-  unsigned ends_of_kept(TetId t) const {
-    unsigned ends = 0;
-    for (std::size_t i = 0; i < 4; ++i) {
-      const VertexId v = complex_.vertices(t)[i];
-      ends |= static_cast<unsigned>(v != kInfinite && mesh_.kept_degree_[v] > 0) << i;
+  void number_boundary() {
+    scratch_.numbers.start();
+    cavity_.numbers.clear();
+    for (const TetFacet& f : cavity_.boundary) {
+      const std::array<VertexId, 3> v = complex_.facet_vertices(f);
+      kernel::WallNumbers& numbers = cavity_.numbers.emplace_back();
+      for (std::size_t j = 0; j < 3; ++j) numbers[j] = scratch_.numbers.number_of(v[j].value());
     }
-    return ends;
+    cavity_.numbered = scratch_.numbers.count();
   }
 
   bool on_boundary_facet(VertexId a, VertexId b) const {
@@ -276,6 +282,7 @@ class CavitySearch {
   Cavity& cavity_;
   CavityScratch& scratch_;
   std::vector<TetId>& queue_;
+  std::vector<TetId>& asked_;  ///< each once, in the order in which they were met
 };
 
 Cavity Tetrahedralization::find_cavity(VertexId vertex, TetId hint) const {

@@ -42,26 +42,6 @@ inline constexpr std::uint32_t kOutside = 1;  ///< seen, not in the cavity
 inline constexpr std::uint32_t kInside = 2;   ///< this and larger: in the cavity
 inline constexpr std::uint32_t kBase = 3;     ///< in the cavity, and must stay there
 
-/// A set of vertices that is emptied at once.
-class VertexSet {
- public:
-  /// Empties the set and makes room for ids below n.
-  void start(std::size_t n) {
-    if (stamps_.size() < n) stamps_.resize(n, 0);
-    if (++stamp_ == 0) {
-      std::fill(stamps_.begin(), stamps_.end(), 0U);
-      stamp_ = 1;
-    }
-  }
-  void insert(VertexId v) { stamps_[v.value()] = stamp_; }
-  bool contains(VertexId v) const { return stamps_[v.value()] == stamp_; }
-  std::size_t bytes() const { return stamps_.capacity() * sizeof(std::uint32_t); }
-
- private:
-  std::vector<std::uint32_t> stamps_;
-  std::uint32_t stamp_ = 0;
-};
-
 /// Sign of orient3d of the tet with local vertex i replaced by p; for a ghost, i must be its infinite vertex.
 template <class AnySites>
 int side(const TetComplex& complex, const AnySites& sites, TetId t, int i, const Vec3& p) {
@@ -268,6 +248,9 @@ class StarBuilder {
   template <class HeldBy>
   void fill(TetComplex& complex, VertexId v, std::span<const Wall> walls, std::span<const TetId> slots,
             const HeldBy& held_by);
+  /// The same with numbers that are known: of each wall's vertices, `named` in all.
+  void fill(TetComplex& complex, VertexId v, std::span<const Wall> walls, std::span<const TetId> slots,
+            std::span<const WallNumbers> numbers, std::uint32_t named);
   /// The same with numbers of its own.
   void fill(TetComplex& complex, VertexId v, std::span<const Wall> walls, std::span<const TetId> slots) {
     fill(complex, v, walls, slots, [&](VertexId w) -> std::uint32_t& { return numbers_[w.value() + 2U]; });
@@ -288,8 +271,11 @@ class StarBuilder {
   /// The new tet, but for its neighbours in the star.
   static void put_behind(const Wall& wall, TetId slot, VertexId v, TetComplex::Tet* all);
   void make_room(std::size_t walls);
+  void glue(std::span<const WallNumbers> numbers, std::uint32_t named, std::span<const TetId> slots,
+            TetComplex::Tet* all);
   template <class Edges>
-  void glue(Edges& edges, std::span<const TetId> slots, TetComplex::Tet* all) const;
+  static void glue(std::span<const WallNumbers> numbers, std::span<const TetId> slots, TetComplex::Tet* all,
+                   Edges& edges);
 
   std::vector<std::uint32_t> numbers_;  ///< of v at v + 2 (the infinite vertex wraps to 0)
   std::vector<Wall> walls_;
@@ -321,21 +307,33 @@ void StarBuilder::fill(TetComplex& complex, VertexId v, std::span<const Wall> wa
     }
   }
   named_ = named;
-  if (named <= EdgeSquare::kMostVertices) return glue(square_, slots.first(walls.size()), all);
-  hash_.start(3 * walls.size());
-  glue(hash_, slots.first(walls.size()), all);
+  glue(wall_numbers_, named, slots.first(walls.size()), all);
+}
+
+inline void StarBuilder::fill(TetComplex& complex, VertexId v, std::span<const Wall> walls,
+                              std::span<const TetId> slots, std::span<const WallNumbers> numbers, std::uint32_t named) {
+  for (std::size_t k = 0; k < walls.size(); ++k) put_behind(walls[k], slots[k], v, complex.tets());
+  glue(numbers, named, slots.first(walls.size()), complex.tets());
+}
+
+inline void StarBuilder::glue(std::span<const WallNumbers> numbers, std::uint32_t named, std::span<const TetId> slots,
+                              TetComplex::Tet* all) {
+  if (named <= EdgeSquare::kMostVertices) return glue(numbers, slots, all, square_);
+  hash_.start(3 * slots.size());
+  glue(numbers, slots, all, hash_);
 }
 
 template <class Edges>
-void StarBuilder::glue(Edges& edges, std::span<const TetId> slots, TetComplex::Tet* all) const {
+void StarBuilder::glue(std::span<const WallNumbers> numbers, std::span<const TetId> slots, TetComplex::Tet* all,
+                       Edges& edges) {
   for (std::size_t k = 0; k < slots.size(); ++k) {
-    const auto [a, b, c] = wall_numbers_[k];
+    const auto [a, b, c] = numbers[k];
     edges.enter(a, b, slots[k]);
     edges.enter(b, c, slots[k]);
     edges.enter(c, a, slots[k]);
   }
   for (std::size_t k = 0; k < slots.size(); ++k) {
-    const auto [a, b, c] = wall_numbers_[k];
+    const auto [a, b, c] = numbers[k];
     const std::array<TetId, 3> neighbours{edges.behind(c, b), edges.behind(a, c), edges.behind(b, a)};
     for (std::size_t j = 0; j < 3; ++j) all[slots[k].value()].neighbours[j] = neighbours[j];
   }

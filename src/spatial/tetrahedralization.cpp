@@ -44,7 +44,6 @@ Tetrahedralization::Tetrahedralization(const VertexStore& vertices, std::uint64_
 
 void Tetrahedralization::cover_vertices() {
   if (vertex_tet_.size() < vertices_->size()) vertex_tet_.resize(vertices_->size());
-  if (kept_degree_.size() < vertices_->size()) kept_degree_.resize(vertices_->size());
   star_builder_.cover_vertices(vertices_->size());
 }
 
@@ -82,15 +81,20 @@ void Tetrahedralization::reserve(Insertion& insertion, VertexId vertex) {
 }
 
 void Tetrahedralization::commit(Insertion& insertion, kernel::StarBuilder& builder) {
-  builder.fill(complex_, insertion.cavity.vertex, insertion.walls, insertion.slots);
+  builder.fill(complex_, insertion.cavity.vertex, insertion.walls, insertion.slots, insertion.cavity.numbers,
+               insertion.cavity.numbered);
 }
 
 void Tetrahedralization::settle(Insertion& insertion) {
-  cover_vertices();
   for (std::size_t k = insertion.walls.size(); k < insertion.slots.size(); ++k) complex_.remove(insertion.slots[k]);
   insertion.slots.resize(insertion.walls.size());
-  for (const TetId t : insertion.slots) touch(t);
   last_ = insertion.slots.back();
+}
+
+void Tetrahedralization::link_vertices() {
+  cover_vertices();
+  for (std::size_t t = 0; t < complex_.slots(); ++t)
+    if (complex_.is_alive(TetId(t))) touch(TetId(t));
 }
 
 void Tetrahedralization::sort_in_space(VertexStore& vertices, VertexId first) {
@@ -136,8 +140,7 @@ void Tetrahedralization::sort_tets(const IndexedVector<VertexId, VertexId>& numb
   for (std::size_t t = 0; t < complex_.slots(); ++t)
     if (complex_.is_alive(TetId(t))) order[next[place[t]]++] = TetId(t);
   complex_.reorder(order);
-  cover_vertices();
-  for (std::size_t t = 0; t < complex_.slots(); ++t) touch(TetId(t));
+  link_vertices();
   star_.clear();
   last_ = TetId();
 }
@@ -220,6 +223,8 @@ void Tetrahedralization::ring(TetEdge edge, std::vector<TetId>& out) const {
 void Tetrahedralization::keep_segment(VertexId a, VertexId b) {
   cover_vertices();
   if (!kept_.insert(segment_key(a, b)).second) return;
+  const std::size_t most = std::max(a, b).value() + std::size_t{1};
+  if (kept_degree_.size() < most) kept_degree_.resize(most);
   ++kept_degree_[a];
   ++kept_degree_[b];
 }

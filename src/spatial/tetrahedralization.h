@@ -50,6 +50,8 @@ struct Cavity {
   VertexId vertex;
   std::vector<TetId> tets;
   std::vector<TetFacet> boundary;
+  std::vector<kernel::WallNumbers> numbers;  ///< of the vertices of each boundary facet, as the search numbers them
+  std::uint32_t numbered = 0;                ///< vertices with a number
   Refusal refusal = Refusal::none;
   bool ok() const { return refusal == Refusal::none; }
 };
@@ -57,9 +59,11 @@ struct Cavity {
 /// What one search needs for itself.
 struct CavityScratch {
   kernel::SmallMarks marks;
-  kernel::VertexSet boundary_vertices;
-  std::vector<TetId> queue;
-  std::size_t bytes() const { return marks.bytes() + boundary_vertices.bytes() + queue.capacity() * sizeof(TetId); }
+  kernel::SmallNumbers numbers;  ///< of the vertices of the boundary
+  std::vector<TetId> queue, asked;
+  std::size_t bytes() const {
+    return marks.bytes() + numbers.bytes() + (queue.capacity() + asked.capacity()) * sizeof(TetId);
+  }
 };
 
 /// One of many insertions at a time: found, then reserved, then committed, then settled.
@@ -101,10 +105,12 @@ class Tetrahedralization {
   /// Takes slots for the star of the vertex, which is in the store now.
   void reserve(Insertion& insertion, VertexId vertex);
   /// Replaces the cavity by the star, if no tet of it or beside it has gone since it was found. Each thread has a
-  /// builder of its own, which covers the store's vertices.
+  /// builder of its own.
   void commit(Insertion& insertion, kernel::StarBuilder& builder);
-  /// Frees what is not needed and notes a tet of each vertex: then the tetrahedralization is whole again.
+  /// Frees what is not needed: then more insertions may be found.
   void settle(Insertion& insertion);
+  /// After the last of them, or sort_in_space: notes a tet of each vertex, without which nothing is found by vertices.
+  void link_vertices();
 
   /// Renumbers all tets, and the vertices from `first` on, which no constraint has, along a Hilbert curve: neighbours
   /// in space become neighbours in memory. The store must be that of the constructor.
@@ -134,6 +140,7 @@ class Tetrahedralization {
   void keep_segment(VertexId a, VertexId b);
   void release_segment(VertexId a, VertexId b);
   bool is_kept(VertexId a, VertexId b) const;
+  bool is_end_of_kept(VertexId v) const { return v.value() < kept_degree_.size() && kept_degree_[v] > 0; }
   /// All of them, smaller id first, sorted.
   std::vector<std::array<VertexId, 2>> kept_segments() const;
 
@@ -157,7 +164,7 @@ class Tetrahedralization {
   TetComplex complex_;
   IndexedVector<VertexId, TetId> vertex_tet_;
   std::unordered_set<std::uint64_t> kept_;              // iterated only to be sorted
-  IndexedVector<VertexId, std::uint32_t> kept_degree_;  // how many kept segments end there
+  IndexedVector<VertexId, std::uint32_t> kept_degree_;  // how many kept segments end there; up to the last
   kernel::StarBuilder star_builder_;
   std::vector<TetId> star_;
   mutable std::vector<TetId> around_;  // scratch of find_edge and find_facet

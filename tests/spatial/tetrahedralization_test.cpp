@@ -320,9 +320,9 @@ TEST(Insert, ManyAtATime) {
   for (std::size_t k = 0; k < places.size(); ++k)
     many.reserve(insertions[k], store.add(places[k], {}, {}, Origin::interior));
   kernel::StarBuilder builder;
-  builder.cover_vertices(store.size());
   for (Insertion& insertion : insertions) many.commit(insertion, builder);
   for (Insertion& insertion : insertions) many.settle(insertion);
+  many.link_vertices();
   expect_valid(many);
   for (const Vec3& p : places) ASSERT_EQ(one_by_one.insert(again.add(p, {}, {}, Origin::interior)), Refusal::none);
   EXPECT_EQ(finite_tets(many), finite_tets(one_by_one));
