@@ -9,22 +9,6 @@ namespace curvetet::kernel {
 namespace {
 
 /// Beside a std::unordered_map, over many starts and more ids than there is room for at first.
-TEST(SmallMarks, AreThoseOfAMap) {
-  std::mt19937_64 random(1);
-  SmallMarks marks;
-  for (std::size_t round = 0; round < 200; ++round) {
-    marks.start();
-    std::unordered_map<std::uint32_t, std::uint32_t> map;
-    for (std::size_t k = 0; k < 5 * round; ++k) {
-      const auto id = static_cast<std::uint32_t>(random() % 700) * 65536U;
-      ASSERT_EQ(marks.state(id), map.contains(id) ? map[id] : 0U);
-      const auto state = static_cast<std::uint32_t>(1 + random() % 3);
-      marks.set(id, state);
-      map[id] = state;
-    }
-  }
-}
-
 TEST(SmallNumbers, AreGivenInOrder) {
   std::mt19937_64 random(2);
   SmallNumbers numbers;
