@@ -266,6 +266,31 @@ double least_alignment(const FacetPair& pair, const ChartSurface& on) {
   return std::min(of(pair.first), of(pair.second));
 }
 
+/// Whether all is excluded at once that may be wrong with a triangle before or after the flip of ab to cd, as nearly
+/// always: with normals within 12 degrees of one, and triangles within 37 degrees of it, none stands upright.
+bool is_plain(const FacetPair& now, const FacetPair& then) {
+  constexpr double kAlike = 0.98, kAlong = 0.8;
+  const Corner &a = now.first.a, &b = now.first.b, &c = now.first.c, &d = now.second.c;
+  if (std::min({dot(a.normal, b.normal), dot(a.normal, c.normal), dot(a.normal, d.normal)}) < kAlike) return false;
+  const auto longest_of = [](const auto& p, const auto& q, const auto& r, const auto& s) {
+    return std::max({norm2(q - p), norm2(r - p), norm2(s - p), norm2(r - q), norm2(s - q), norm2(s - r)});
+  };
+  const double longest = longest_of(a.position, b.position, c.position, d.position);
+  const double longest_in_chart = longest_of(a.q, b.q, c.q, d.q);
+  const auto plain = [&](const Facet& f) {
+    const double along = dot(f.normal, a.normal), size = norm2(f.normal);
+    return !f.degenerate && along > 0 && along * along > kAlong * kAlong * size &&
+           size > kFlat * kFlat * longest * longest &&
+           std::abs(cross(f.b.q - f.a.q, f.c.q - f.a.q)) > kFlat * longest_in_chart;
+  };
+  return plain(now.first) && plain(now.second) && plain(then.first) && plain(then.second);
+}
+
+/// Whether the angles opposite ab are too large together.
+bool angles_improve(const Corner& a, const Corner& b, const Corner& c, const Corner& d) {
+  return cotangent(c.position, a.position, b.position) + cotangent(d.position, a.position, b.position) < -kFlipMargin;
+}
+
 /// Delaunay in the mean of the corners' first fundamental forms.
 bool flip_improves_on_surface(const Corner& a, const Corner& b, const Corner& c, const Corner& d) {
   double e = 0, f = 0, g = 0;
@@ -291,6 +316,7 @@ bool flip_improves(const Corner& a, const Corner& b, const Corner& c, const Corn
   if (order == FlipOrder::on_surface) return flip_improves_on_surface(a, b, c, d);
   if (c.vertex == d.vertex) return false;
   const FacetPair now{facet(a, b, c), facet(b, a, d)}, then{facet(a, d, c), facet(d, b, c)};
+  if (is_plain(now, then) && !bent(a, b) && !bent(c, d)) return angles_improve(a, b, c, d);
   const int flat_now = count_flat(now), flat_then = count_flat(then);
   if (flat_then != flat_now) return flat_then < flat_now;
   // Four corners in a line: no angle says anything, but with the shorter edge each is nearer to a neighbour.
@@ -309,7 +335,7 @@ bool flip_improves(const Corner& a, const Corner& b, const Corner& c, const Corn
   if (degenerate_now > 0) return apex_improves(a, b, c, d);
   // A fin stands upright on the surface: thin in the chart, where a point was put on a long edge, but not in space.
   if (upright_now + upright_then > 0) return least_alignment(then, on) > least_alignment(now, on) + kFlipMargin;
-  return cotangent(c.position, a.position, b.position) + cotangent(d.position, a.position, b.position) < -kFlipMargin;
+  return angles_improve(a, b, c, d);
 }
 
 double circumradius(Vec3 a, Vec3 b, Vec3 c) {

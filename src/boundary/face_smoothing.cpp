@@ -31,16 +31,20 @@ class FaceSmoothing {
 
   void run(const Context& context) {
     if (is_folded()) return;
+    asleep_.assign(corners_.size(), 0);
     for (int sweep = 0; sweep < kSweeps; ++sweep) {
       touched_.clear();
       for (std::uint32_t n = first_.value(); n < corners_.size(); ++n) {
         if (n % 256 == 0 && context.should_stop()) return;
-        if (mesh_.triangle_at(NodeId(n)).valid()) improve(NodeId(n));
+        if (asleep_[n] != 0 || !mesh_.triangle_at(NodeId(n)).valid()) continue;
+        asleep_[n] = 1;
+        improve(NodeId(n));
       }
       if (touched_.empty()) return;
       std::sort(touched_.begin(), touched_.end());
       touched_.erase(std::unique(touched_.begin(), touched_.end()), touched_.end());
       mesh_.restore(touched_, wanted_, changed_);
+      wake_corners(changed_);
     }
   }
 
@@ -69,8 +73,14 @@ class FaceSmoothing {
       if (nears_curve(n, corners_[n.value()].position, there.position) || !mesh_.move_node(n, q)) continue;
       corners_[n.value()] = there;
       touched_.insert(touched_.end(), star_.begin(), star_.end());
+      wake_corners(star_);
       return;
     }
+  }
+
+  void wake_corners(const std::vector<TriangleId>& triangles) {
+    for (const TriangleId t : triangles)
+      for (const NodeId n : mesh_.triangle(t).node) asleep_[n.value()] = 0;
   }
 
   Vec2 middle_of_neighbours(NodeId n) const {
@@ -133,6 +143,7 @@ class FaceSmoothing {
   ChartSurface on_;
   const FaceMesh::FlipWanted& wanted_;
   std::vector<TriangleId> star_, touched_, changed_;
+  std::vector<char> asleep_;  ///< nodes around which nothing has changed since they were looked at
 };
 
 }  // namespace
