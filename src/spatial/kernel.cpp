@@ -4,7 +4,6 @@
 // at the same time.
 #include "spatial/kernel.h"
 
-#include <algorithm>
 #include <bit>
 
 namespace curvetet::kernel {
@@ -48,9 +47,7 @@ void StarBuilder::replace(TetComplex& complex, VertexId v, std::span<const TetId
 }
 
 void StarBuilder::make_room(std::size_t walls) {
-  // A sphere of F triangles has F / 2 + 2 vertices.
-  const std::size_t vertices = std::bit_ceil(std::max<std::size_t>(walls / 2 + 2, EdgeSquare::kMostVertices));
-  if (names_.size() < vertices) names_.resize(vertices);
+  if (names_.size() < 3 * walls) names_.resize(std::bit_ceil(3 * walls));
   if (wall_numbers_.size() < walls) wall_numbers_.resize(std::bit_ceil(walls));
 }
 
