@@ -96,7 +96,7 @@ bench() {
   done
   say "Whole meshings"
   build/bench/bench/make_bodies out/bodies
-  python3 scripts/benchmark.py --body out/bodies/bulk.brep --sizes 0.0149 --curvetet build/bench/apps/curvetet/curvetet \
+  python3 scripts/benchmark.py --body out/bodies/bulk.brep --sizes 0.0149,0.0107 --curvetet build/bench/apps/curvetet/curvetet \
     --out out/benchmark --page docs/benchmarks.md
   say "Surfaces"
   python3 scripts/benchmark_surfaces.py --bodies out/bodies --curvetet build/bench/apps/curvetet/curvetet --out out/surfaces \

@@ -4,7 +4,8 @@
 Peers are Debian's gmsh with its HXT and its Delaunay algorithm; if it is not installed curvetet is measured alone. gmsh gets the
 size; curvetet the size at which it makes as many tets as gmsh's HXT, within two hundredths, which is looked for first. All run on one
 thread, curvetet then on all, in turn, so that what else the machine does meets all alike. Times are those of the clock, memory
-is the most a process had; the table gives medians. curvetet checks its mesh in that time, gmsh does not.
+is the most a process had; the table gives medians. curvetet checks its mesh in that time, gmsh does not. A program that has taken
+more than a minute is not run again.
 
     scripts/benchmark.py --body out/bodies/bulk.brep --sizes 0.0149,0.0107 --curvetet build/bench/apps/curvetet/curvetet \\
         --out out/benchmark --page docs/benchmarks.md
@@ -23,6 +24,7 @@ from corpus import gmsh_command, read_json, run
 
 CLOSE = 0.02
 ROUNDS = 8  # of the search for the size
+MOST_SECONDS = 60  # that a program may have taken before it is run once more
 
 
 def parse_arguments():
@@ -89,6 +91,8 @@ class Benchmark:
         measured, stages = {name: [] for name in commands}, {name: [] for name in commands}
         for _ in range(self.a.runs):
             for name, command in commands.items():
+                if sum(seconds for seconds, _, _ in measured[name]) > MOST_SECONDS:
+                    continue
                 measured[name].append(measure(command))
                 if name in own:
                     stages[name].append({s["stage"]: s["seconds"] for s in read_json(self.report(own[name]))["stages"]})

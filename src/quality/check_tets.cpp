@@ -100,7 +100,7 @@ void file_facets(const Mesh& mesh, Topology& topology, Context& context) {
     for (std::size_t v = begin; v < end; ++v) {
       std::sort(topology.facet_uses.begin() + topology.facet_begin[v],
                 topology.facet_uses.begin() + topology.facet_begin[v + 1], [](const FacetUse& a, const FacetUse& b) {
-                  return std::tie(a.middle, a.largest, a.tet) < std::tie(b.middle, b.largest, b.tet);
+                  return a.key() != b.key() ? a.key() < b.key() : a.tet < b.tet;
                 });
     }
   });
@@ -139,8 +139,7 @@ void scan_facets(const Mesh& mesh, Topology& topology, Findings& findings) {
     for (std::uint32_t i = topology.facet_begin[v]; i < end;) {
       std::uint32_t j = i + 1;
       const FacetUse& first = topology.facet_uses[i];
-      while (j < end && topology.facet_uses[j].middle == first.middle &&
-             topology.facet_uses[j].largest == first.largest) {
+      while (j < end && topology.facet_uses[j].key() == first.key()) {
         const std::uint32_t other = topology.facet_uses[j].tet;
         pieces.join(first.tet, other);
         if (mesh.tet_solid[first.tet] == mesh.tet_solid[other]) region_pieces.join(first.tet, other);
@@ -163,13 +162,9 @@ void scan_facets(const Mesh& mesh, Topology& topology, Findings& findings) {
 std::span<const FacetUse> uses_of(const Topology& topology, const std::array<std::uint32_t, 3>& ascending) {
   const auto begin = topology.facet_uses.begin() + topology.facet_begin[ascending[0]];
   const auto end = topology.facet_uses.begin() + topology.facet_begin[ascending[0] + 1];
-  const auto before = [](const FacetUse& use, const std::array<std::uint32_t, 3>& key) {
-    return std::tie(use.middle, use.largest) < std::tie(key[1], key[2]);
-  };
-  const auto after = [](const std::array<std::uint32_t, 3>& key, const FacetUse& use) {
-    return std::tie(key[1], key[2]) < std::tie(use.middle, use.largest);
-  };
-  return {std::lower_bound(begin, end, ascending, before), std::upper_bound(begin, end, ascending, after)};
+  const std::uint64_t key = FacetUse{ascending[1], ascending[2]}.key();
+  const auto first = std::lower_bound(begin, end, key, [](const FacetUse& u, std::uint64_t k) { return u.key() < k; });
+  return {first, std::find_if(first, end, [key](const FacetUse& use) { return use.key() != key; })};
 }
 
 bool check_arrays(const Mesh& mesh, Findings& findings) {

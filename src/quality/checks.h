@@ -44,6 +44,7 @@ struct FacetUse {
   std::uint32_t tet = 0;
   bool above =
       false;  ///< the tet lies on the side the normal of (smallest, middle, largest) points to; by its corners' order
+  std::uint64_t key() const { return std::uint64_t{middle} << 32U | largest; }  ///< of the facet under its vertex
 };
 
 /// A facet between two different regions. Vertices ascend; `above` is the region on the side of their normal.

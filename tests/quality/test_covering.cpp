@@ -93,6 +93,18 @@ TEST(Covering, IsRefusedForABallInAWall) {
   EXPECT_FALSE(verdict.covered_once);
 }
 
+/// Across an edge of four facets a sheet does not go on: one tet within another, from which it has an edge.
+TEST(Covering, IsRefusedForATetWithinAnEdgeOfAnother) {
+  Mesh mesh;
+  mesh.points = {{0, 0, 0}, {4, 0, 0}, {0, 4, 0}, {0, 0, 4}, {1, 0.2, 0.1}, {1, 0.1, 0.2}};
+  mesh.tets = {{0, 1, 2, 3}, {0, 1, 4, 5}};
+  mesh.tet_solid = {0, 0};
+  mesh.solids.resize(1);
+  const Verdict verdict = judge(mesh);
+  EXPECT_TRUE(verdict.embedded_boundary);
+  EXPECT_FALSE(verdict.covered_once);
+}
+
 TEST(Covering, AgreesWithTheSearch) {
   std::mt19937_64 random(1);
   std::uniform_real_distribution<double> uniform(-1, 1);
