@@ -112,10 +112,7 @@ class Builder {
   /// After run, and once: from local numbers to the caller's ids; notes a tet of each vertex.
   void rename(IndexedVector<VertexId, TetId>& tet_of) {
     TetComplex::Tet* const all = complex_.tets();
-    constexpr std::size_t kAhead = 8;
     for (std::size_t slot = 0; slot < complex_.slots(); ++slot) {
-      for (const VertexId v : all[std::min(slot + kAhead, complex_.slots() - 1)].vertices)
-        if (v.value() < sites_.size()) __builtin_prefetch(&sites_[v.value()]);
       if (!complex_.is_alive(TetId(slot))) continue;
       for (VertexId& v : all[slot].vertices) {
         if (v == kInfinite) continue;
