@@ -87,7 +87,6 @@ void build(benchmark::State& state) {
   state.counters["bytes/tet"] = bytes / tets;
   const PredicateCounts& counts = predicate_counts();
   state.counters["exact/tet"] = static_cast<double>(counts.extended + counts.exact) / (runs * tets);
-  state.counters["tied/tet"] = static_cast<double>(counts.perturbed) / (runs * tets);
 }
 BENCHMARK(build)->ArgsProduct({{0, 1, 2, 3, 4, 5}, {100000}})->Unit(benchmark::kMillisecond);
 BENCHMARK(build)->ArgsProduct({{0, 1, 2, 3, 4}, {1000000}})->Unit(benchmark::kMillisecond);

@@ -269,7 +269,8 @@ double least_alignment(const FacetPair& pair, const ChartSurface& on) {
 /// Whether all is excluded at once that may be wrong with a triangle before or after the flip of ab to cd, as nearly
 /// always: with normals within 12 degrees of one, and triangles within 37 degrees of it, none stands upright.
 bool is_plain(const FacetPair& now, const FacetPair& then) {
-  constexpr double kAlike = 0.98, kAlong = 0.8;
+  constexpr double kAlike = 0.98, kAlong = 0.8;  // the sines are below 0.2 and 0.6
+  static_assert(kAlike * kAlong - 0.2 * 0.6 > kUpright, "no triangle stands upright on a mean of the normals");
   const Corner &a = now.first.a, &b = now.first.b, &c = now.first.c, &d = now.second.c;
   if (std::min({dot(a.normal, b.normal), dot(a.normal, c.normal), dot(a.normal, d.normal)}) < kAlike) return false;
   const auto longest_of = [](const auto& p, const auto& q, const auto& r, const auto& s) {

@@ -211,9 +211,10 @@ int insphere(Vec3 a, Vec3 b, Vec3 c, Vec3 d, Vec3 e) {
   return filtered;
 }
 
-int insphere_tie(const std::array<Vec3, 5>& points, const std::array<VertexId, 5>& ids) {
-  ++predicate_counts().perturbed;
+int insphere_perturbed(const std::array<Vec3, 5>& points, const std::array<VertexId, 5>& ids) {
   const auto& [a, b, c, d, e] = points;
+  const int exact = insphere(a, b, c, d, e);
+  if (exact != 0) return exact;
   unsigned tried = 0;
   for (int round = 0; round < 5; ++round) {
     // The largest id not yet tried: the first mostly decides, so nothing is sorted.
@@ -231,11 +232,6 @@ int insphere_tie(const std::array<Vec3, 5>& points, const std::array<VertexId, 5
     if (coefficient != 0) return coefficient;
   }
   return 0;
-}
-
-int insphere_perturbed(const std::array<Vec3, 5>& points, const std::array<VertexId, 5>& ids) {
-  const int exact = insphere(points[0], points[1], points[2], points[3], points[4]);
-  return exact != 0 ? exact : insphere_tie(points, ids);
 }
 
 int orient2d(Vec2 a, Vec2 b, Vec2 c) {

@@ -26,9 +26,6 @@ int insphere(Vec3 a, Vec3 b, Vec3 c, Vec3 d, Vec3 e);
 /// over all calls.
 int insphere_perturbed(const std::array<Vec3, 5>& points, const std::array<VertexId, 5>& ids);
 
-/// The second half of insphere_perturbed: the sign that the perturbation gives to five points whose insphere is zero.
-int insphere_tie(const std::array<Vec3, 5>& points, const std::array<VertexId, 5>& ids);
-
 /// Points of a face mesh's chart (planar/chart): every coordinate a multiple of 2^-42, absolute value at most 1.
 /// Sign of cross(b-a, c-a): +1 when a,b,c turn left. Exact.
 int orient2d(Vec2 a, Vec2 b, Vec2 c);
@@ -50,7 +47,7 @@ SegmentTriangle segment_triangle(Vec3 p, Vec3 q, Vec3 a, Vec3 b, Vec3 c);
 
 /// Counts of decisions per rung on this thread, for tests and benchmarks.
 struct PredicateCounts {
-  std::uint64_t filter = 0, extended = 0, exact = 0, perturbed = 0;
+  std::uint64_t filter = 0, extended = 0, exact = 0;
 };
 PredicateCounts& predicate_counts();
 

@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <tuple>
 
+#include "base/disjoint_sets.h"
 #include "quality/checks.h"
 
 namespace curvetet::checks {
@@ -116,6 +117,7 @@ std::vector<EdgeOfRegion> edges_of_regions(const Topology& topology) {
 
 void check_edges(const Mesh& mesh, Topology& topology, Findings& findings) {
   const std::vector<EdgeOfRegion> edges = edges_of_regions(topology);
+  DisjointSets sheets(topology.boundary.size());
   for (std::size_t i = 0; i < edges.size();) {
     std::size_t j = i;
     while (j < edges.size() && edges[j].key() == edges[i].key()) ++j;
@@ -128,9 +130,14 @@ void check_edges(const Mesh& mesh, Topology& topology, Findings& findings) {
     if (e.region != kOutside) {
       --topology.euler[e.region];
       if (j - i > 2) topology.crowded_edges.push_back({e.a, e.b, e.region, j - i});
+    } else if (j - i == 2) {
+      constexpr std::uint32_t kCornersPerFacet = 6;  // of both regions
+      sheets.join(edges[i].corner_a / kCornersPerFacet, edges[i + 1].corner_a / kCornersPerFacet);
     }
     i = j;
   }
+  topology.outer_sheet.resize(topology.boundary.size());
+  for (std::uint32_t f = 0; f < topology.outer_sheet.size(); ++f) topology.outer_sheet[f] = sheets.root(f);
 }
 
 void count_vertices_and_facets(const Mesh& mesh, Topology& topology) {

@@ -17,10 +17,8 @@
 #include <boost/multiprecision/cpp_int.hpp>
 #include <limits>
 #include <optional>
-#include <tuple>
 #include <vector>
 
-#include "base/disjoint_sets.h"
 #include "quality/checks.h"
 #include "quality/exact.h"
 
@@ -42,19 +40,18 @@ struct Line {
 struct Crossing {
   Fraction height;
   int change = 0;  ///< of the number of tets, upwards
-  std::size_t facet = 0;
+  std::uint32_t facet = 0;
 };
 
 class CoveringCheck {
  public:
-  CoveringCheck(const Mesh& mesh, const Topology& topology, const BoundaryTree& tree)
-      : mesh_(mesh), boundary_(topology.boundary), tree_(tree), sheets_(boundary_.size()) {}
+  CoveringCheck(const Mesh& mesh, const Topology& topology, const BoxTree& tree)
+      : mesh_(mesh), boundary_(topology.boundary), sheet_(topology.outer_sheet), tree_(tree) {}
 
   bool run() {
-    join_sheets();
     settled_.assign(boundary_.size(), 0);
     for (const std::uint32_t f : largest_of_sheets()) {
-      if (settled_[sheets_.root(f)] != 0) continue;
+      if (settled_[sheet_[f]] != 0) continue;
       if (!is_simple_on_a_line_through(f)) return false;
     }
     return true;
@@ -62,29 +59,11 @@ class CoveringCheck {
 
  private:
   /// A facet with tets on one side only.
-  bool is_outer(const BoundaryFacet& f) const { return f.above == kOutside || f.below == kOutside; }
+  static bool is_outer(const BoundaryFacet& f) { return f.above == kOutside || f.below == kOutside; }
 
-  std::array<Vec3, 3> corners(std::size_t f) const {
+  std::array<Vec3, 3> corners(std::uint32_t f) const {
     const auto& v = boundary_[f].vertices;
     return {vec(mesh_.points[v[0]]), vec(mesh_.points[v[1]]), vec(mesh_.points[v[2]])};
-  }
-
-  void join_sheets() {
-    struct Side {
-      std::uint32_t a, b, facet;
-    };
-    std::vector<Side> sides;
-    for (std::uint32_t f = 0; f < boundary_.size(); ++f) {
-      if (!is_outer(boundary_[f])) continue;
-      const auto& v = boundary_[f].vertices;
-      sides.insert(sides.end(), {Side{v[0], v[1], f}, Side{v[0], v[2], f}, Side{v[1], v[2], f}});
-    }
-    std::sort(sides.begin(), sides.end(),
-              [](const Side& s, const Side& t) { return std::tie(s.a, s.b, s.facet) < std::tie(t.a, t.b, t.facet); });
-    for (std::size_t i = 0, j = 0; i < sides.size(); i = j) {
-      for (j = i; j < sides.size() && sides[j].a == sides[i].a && sides[j].b == sides[i].b;) ++j;
-      if (j == i + 2) sheets_.join(sides[i].facet, sides[i + 1].facet);
-    }
   }
 
   std::vector<std::uint32_t> largest_of_sheets() {
@@ -92,7 +71,7 @@ class CoveringCheck {
     std::vector<double> area(boundary_.size(), -1);
     for (std::uint32_t f = 0; f < boundary_.size(); ++f) {
       if (!is_outer(boundary_[f])) continue;
-      const std::uint32_t sheet = sheets_.root(f);
+      const std::uint32_t sheet = sheet_[f];
       const auto p = corners(f);
       const double squared = norm2(cross(p[1] - p[0], p[2] - p[0]));
       if (squared <= area[sheet]) continue;
@@ -134,7 +113,7 @@ class CoveringCheck {
       covered += c.change;
       if (covered < 0 || covered > 1) return false;
     }
-    for (const Crossing& c : crossings) settled_[sheets_.root(static_cast<std::uint32_t>(c.facet))] = 1;
+    for (const Crossing& c : crossings) settled_[sheet_[c.facet]] = 1;
     return true;
   }
 
@@ -144,7 +123,7 @@ class CoveringCheck {
     box.low[line.axis] = -kFar;
     box.high[line.axis] = kFar;
     std::vector<std::uint32_t> near;
-    tree_.tree.overlaps(box, near);
+    tree_.overlaps(box, near);
     std::erase_if(near, [this](std::uint32_t g) { return !is_outer(boundary_[g]); });
     return near;
   }
@@ -175,14 +154,14 @@ class CoveringCheck {
 
   const Mesh& mesh_;
   const std::vector<BoundaryFacet>& boundary_;
-  const BoundaryTree& tree_;
-  DisjointSets sheets_;
-  std::vector<std::uint8_t> settled_;  ///< by the root of a sheet
+  const std::vector<std::uint32_t>& sheet_;
+  const BoxTree& tree_;
+  std::vector<std::uint8_t> settled_;  ///< by sheet
 };
 
 }  // namespace
 
-bool is_covered_once(const Mesh& mesh, const Topology& topology, const BoundaryTree& tree) {
+bool is_covered_once(const Mesh& mesh, const Topology& topology, const BoxTree& tree) {
   return CoveringCheck(mesh, topology, tree).run();
 }
 

@@ -33,6 +33,7 @@ class Findings {
   void add(const char* check, Severity severity, const std::function<std::string()>& example);
   std::vector<Finding> take() { return std::move(findings_); }
   bool any(const char* check) const;
+  bool any_error() const;
 
  private:
   std::vector<Finding> findings_;
@@ -73,7 +74,9 @@ struct Topology {
   std::uint32_t tet_components = 0;              ///< joined through facets
   std::vector<std::uint32_t> region_components;  ///< by solid: pieces joined through facets between tets of the solid
   std::vector<CrowdedEdge> crowded_edges;
-  std::vector<int> euler;  ///< by solid: V - E + F of its boundary
+  std::vector<std::uint32_t> outer_sheet;  ///< by boundary facet beside the outside: the same for those that are joined
+                                           ///< by edges of two of these
+  std::vector<int> euler;                  ///< by solid: V - E + F of its boundary
 };
 
 /// The uses of the facet with these ascending vertices.
@@ -92,25 +95,21 @@ void check_nodes(const Mesh& mesh, const Topology& topology, Findings& findings)
 Topology check_tets(const Mesh& mesh, Context& context, Findings& findings);
 /// Labelled triangles against boundary facets: each once, the same sides for all triangles of a face.
 void check_triangles(const Mesh& mesh, Topology& topology, Findings& findings);
-/// Boundary of each solid closed; crowded edges and Euler characteristics are recorded.
+/// Boundary of each solid closed; crowded edges, sheets and Euler characteristics are recorded.
 void check_closedness(const Mesh& mesh, const Model* model, Topology& topology, Findings& findings);
 
-/// Boxes of the boundary facets.
-struct BoundaryTree {
-  std::vector<Box3> boxes;
-  BoxTree tree;
-};
-BoundaryTree boundary_tree(const Mesh& mesh, const Topology& topology);
+BoxTree tree_of_boundary(const Mesh& mesh, const Topology& topology);
 
 /// Boundary facets meet only in shared vertices and edges (exact).
-void check_self_intersection(const Mesh& mesh, const Topology& topology, const BoundaryTree& tree, Context& context,
+void check_self_intersection(const Mesh& mesh, const Topology& topology, const BoxTree& tree, Context& context,
                              Findings& findings);
-/// No vertex lies in or on a tet it does not belong to (exact). What was found before says whether that has a proof.
-void check_overlap(const Mesh& mesh, const Topology& topology, const BoundaryTree& tree, Context& context,
+/// No vertex lies in or on a tet it does not belong to (exact). Where no error was found before, a proof is tried
+/// first.
+void check_overlap(const Mesh& mesh, const Topology& topology, const BoxTree& tree, Context& context,
                    Findings& findings);
 /// True if it is proved that no place off the facets is in two tets, for a mesh of positive tets whose facets have one
 /// tet, or two on opposite sides, and whose boundary facets do not meet. O(n log n) in the boundary facets.
-bool is_covered_once(const Mesh& mesh, const Topology& topology, const BoundaryTree& tree);
+bool is_covered_once(const Mesh& mesh, const Topology& topology, const BoxTree& tree);
 
 /// Everything that needs the CAD: labels, vertices on their entities, folds, chains, coverage, volumes, Euler
 /// characteristics.

@@ -69,6 +69,11 @@ bool Findings::any(const char* check) const {
   return std::any_of(findings_.begin(), findings_.end(), [&](const Finding& f) { return f.check == check; });
 }
 
+bool Findings::any_error() const {
+  return std::any_of(findings_.begin(), findings_.end(),
+                     [](const Finding& f) { return f.severity == Severity::error; });
+}
+
 void in_blocks(const Context& context, std::size_t n, const std::function<void(std::size_t, std::size_t)>& body) {
   parallel_for(context, (n + kBlock - 1) / kBlock,
                [&](std::size_t block) { body(block * kBlock, std::min(n, (block + 1) * kBlock)); });
@@ -122,12 +127,6 @@ QualitySummary summarize_quality(const Mesh& mesh, Context& context) {
   return summary;
 }
 
-void check_space(const Mesh& mesh, const Topology& topology, Context& context, Findings& findings) {
-  const BoundaryTree tree = boundary_tree(mesh, topology);
-  check_self_intersection(mesh, topology, tree, context, findings);
-  check_overlap(mesh, topology, tree, context, findings);
-}
-
 }  // namespace checks
 
 bool ValidationReport::valid() const {
@@ -151,7 +150,9 @@ ValidationReport validate(const Mesh& mesh, const Model* model, double unit_scal
     check_triangles(mesh, topology, findings);
     check_closedness(mesh, model, topology, findings);
     if (stopped()) return report;
-    check_space(mesh, topology, context, findings);
+    const BoxTree boundary = tree_of_boundary(mesh, topology);
+    check_self_intersection(mesh, topology, boundary, context, findings);
+    check_overlap(mesh, topology, boundary, context, findings);
     if (stopped()) return report;
     report.solid_volumes = solid_volumes(mesh);
     report.quality = summarize_quality(mesh, context);

@@ -168,16 +168,15 @@ class Builder {
   /// The finite tet of the last star whose vertices are nearest to p. On surfaces, where tets are long and thin, this
   /// saves most of the walk; elsewhere it costs no more than it saves.
   TetId start_for(const Vec3& p) {
-    const std::span<const VertexId> names = star_builder_.names();
-    if (far_.size() < names.size()) far_.resize(2 * names.size());
-    for (std::size_t k = 0; k < names.size(); ++k) {
-      far_[k] = names[k] == kInfinite ? std::numeric_limits<double>::infinity()
-                                      : norm2(sites_[names[k].value()].position - p);
+    if (far_.size() < named_) far_.resize(2 * named_);
+    for (std::size_t k = 0; k < named_; ++k) {
+      far_[k] = names_[k] == kInfinite ? std::numeric_limits<double>::infinity()
+                                       : norm2(sites_[names_[k].value()].position - p);
     }
     TetId best = last_;
     double least = std::numeric_limits<double>::infinity();
     for (std::size_t k = 0; k < wall_count_; ++k) {
-      const auto [a, b, c] = star_builder_.wall_numbers()[k];
+      const auto [a, b, c] = wall_numbers_[k];
       const double sum = far_[a] + far_[b] + far_[c];
       best = sum < least ? tets_[k] : best;
       least = std::min(least, sum);
@@ -273,10 +272,29 @@ class Builder {
       if (tet_count_ == tets_.size()) tets_.resize(2 * tets_.size());
       tets_[tet_count_] = complex_.add({});
     }
-    star_builder_.fill(complex_, v, std::span(walls_).first(wall_count_), tets_, [&](VertexId w) -> std::uint32_t& {
-      return w == kInfinite ? infinite_ : sites_[w.value()].number;
-    });
+    number_walls();
+    star_builder_.fill(complex_, v, std::span(walls_).first(wall_count_), tets_, wall_numbers_, named_);
     for (std::size_t k = wall_count_; k < tet_count_; ++k) complex_.remove(tets_[k]);
+  }
+
+  /// What a site holds is its vertex's number if the names agree, so that nothing has to be cleared.
+  void number_walls() {
+    if (names_.size() < 3 * wall_count_) names_.resize(std::bit_ceil(3 * wall_count_));
+    if (wall_numbers_.size() < wall_count_) wall_numbers_.resize(2 * wall_count_);
+    const std::size_t mask = names_.size() - 1;
+    std::uint32_t named = 0;
+    for (std::size_t k = 0; k < wall_count_; ++k) {
+      for (std::size_t j = 0; j < 3; ++j) {
+        const VertexId w = walls_[k].vertices[j];
+        std::uint32_t& held = w == kInfinite ? infinite_ : sites_[w.value()].number;
+        const std::uint32_t fresh = (held >= named) | (names_[held & mask] != w);
+        held = (held & (fresh - 1)) | (named & -fresh);
+        names_[held] = w;
+        named += fresh;
+        wall_numbers_[k][j] = held;
+      }
+    }
+    named_ = named;
   }
 
   TetComplex& complex_;
@@ -292,6 +310,10 @@ class Builder {
   std::vector<TetId> asked_ = std::vector<TetId>(64);  ///< each once, in the order in which they were met
   std::vector<std::pair<TetId, std::uint32_t>> facets_;
   std::size_t tet_count_ = 0, wall_count_ = 0, asked_count_ = 0;
+  // The vertices of the boundary by number, of which there are named_, and the numbers of each wall's.
+  std::vector<VertexId> names_;  ///< a power of two
+  std::vector<kernel::WallNumbers> wall_numbers_;
+  std::uint32_t named_ = 0;
   std::vector<double> far_;  ///< squared distance of each vertex of the last boundary to the next point
 
   std::uint32_t infinite_ = 0;  ///< the number of the infinite vertex

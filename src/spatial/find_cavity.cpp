@@ -35,8 +35,7 @@ class CavitySearch {
         p_(p),
         cavity_(cavity),
         scratch_(scratch),
-        queue_(scratch.queue),
-        asked_(scratch.asked) {
+        queue_(scratch.queue) {
     cavity_.vertex = vertex;
     cavity_.tets.clear();
     cavity_.boundary.clear();
@@ -129,41 +128,33 @@ class CavitySearch {
     });
   }
 
-  /// Spheres wait until there are four of them, or no other tet of the cavity is left to look around.
+  /// Its boundary is known with it: what is around a tet is settled when the tet is looked at.
   void grow() {
-    asked_.clear();
-    for (std::size_t looked = 0, answered = 0;;) {
-      while (asked_.size() < answered + 4 && looked < cavity_.tets.size()) ask_around(cavity_.tets[looked++]);
-      if (answered == asked_.size()) break;
-      const std::size_t n = std::min<std::size_t>(4, asked_.size() - answered);
-      take_in(answered, n);
-      answered += n;
-    }
-    collect_boundary();
-  }
-
-  /// Notes the neighbours that were not asked yet.
-  void ask_around(TetId t) {
-    for (int i = 0; i < 4; ++i) {
-      const TetId next = complex_.neighbour(t, i);
-      if (complex_.is_locked({t, i}) || marks_.state(next.value()) != 0) continue;
-      marks_.set(next.value(), kernel::kOutside);
-      complex_.prefetch(next);
-      asked_.push_back(next);
+    for (std::size_t k = 0; k < cavity_.tets.size(); ++k) {
+      const TetId t = cavity_.tets[k];
+      const std::array<TetId, 4>& neighbours = complex_.neighbours(t);
+      unsigned asked = 0;
+      for (int i = 0; i < 4; ++i) {
+        const bool fresh =
+            marks_.state(neighbours[static_cast<std::size_t>(i)].value()) == 0 && !complex_.is_locked({t, i});
+        asked |= static_cast<unsigned>(fresh) << static_cast<unsigned>(i);
+      }
+      if (asked != 0) add_conflicts(neighbours, asked);
+      for (int i = 0; i < 4; ++i)
+        if (is_boundary(t, i)) cavity_.boundary.push_back({t, i});
     }
   }
 
-  /// Those of the asked tets from `first` on that join the cavity.
-  void take_in(std::size_t first, std::size_t n) {
-    std::array<TetId, 4> four;
-    for (std::size_t k = 0; k < 4; ++k) four[k] = asked_[first + std::min(k, n - 1)];  // no lane is without a tet
-    unsigned conflicts =
-        kernel::conflicts_among(complex_, sites_, mesh_.insphere_four_, four, (1U << n) - 1, p_, vertex_, 0);
-    for (; conflicts != 0; conflicts &= conflicts - 1) {
-      const TetId t = four[static_cast<std::size_t>(std::countr_zero(conflicts))];
-      marks_.set(t.value(), kernel::kInside);
-      cavity_.tets.push_back(t);
-      for (const TetId beyond : complex_.neighbours(t)) complex_.prefetch(beyond);
+  void add_conflicts(const std::array<TetId, 4>& neighbours, unsigned asked) {
+    const unsigned conflicts =
+        kernel::conflicts_among(complex_, sites_, mesh_.insphere_four_, neighbours, asked, p_, vertex_, 0);
+    for (; asked != 0; asked &= asked - 1) {
+      const auto i = static_cast<unsigned>(std::countr_zero(asked));
+      const bool joins = (conflicts >> i & 1U) != 0;
+      marks_.set(neighbours[i].value(), joins ? kernel::kInside : kernel::kOutside);
+      if (!joins) continue;
+      for (const TetId beyond : complex_.neighbours(neighbours[i])) complex_.prefetch(beyond);
+      cavity_.tets.push_back(neighbours[i]);
     }
   }
 
@@ -228,7 +219,7 @@ class CavitySearch {
       int ends = 0;
       for (const VertexId v : complex_.vertices(*t)) {
         if (v == kInfinite) continue;
-        if (scratch_.numbers.find(v.value()) == kernel::SmallNumbers::kNone) return take_out(v, v);
+        if (!scratch_.numbers.contains(v.value())) return take_out(v, v);
         ends += static_cast<int>(mesh_.is_end_of_kept(v));
       }
       if (ends < 2) continue;
@@ -282,7 +273,6 @@ class CavitySearch {
   Cavity& cavity_;
   CavityScratch& scratch_;
   std::vector<TetId>& queue_;
-  std::vector<TetId>& asked_;  ///< each once, in the order in which they were met
 };
 
 Cavity Tetrahedralization::find_cavity(VertexId vertex, TetId hint) const {

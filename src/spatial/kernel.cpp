@@ -4,8 +4,6 @@
 // at the same time.
 #include "spatial/kernel.h"
 
-#include <bit>
-
 namespace curvetet::kernel {
 
 TetId add_first_tet(TetComplex& complex, VertexId a, VertexId b, VertexId c, VertexId d) {
@@ -41,16 +39,13 @@ void StarBuilder::replace(TetComplex& complex, VertexId v, std::span<const TetId
   collect_walls(complex, boundary, walls_);
   star.assign(tets.begin(), tets.end());
   while (star.size() < walls_.size()) star.push_back(complex.add({}));
-  fill(complex, v, walls_, star);
+  vertex_numbers_.start();
+  wall_numbers_.resize(walls_.size());
+  for (std::size_t k = 0; k < walls_.size(); ++k)
+    for (std::size_t j = 0; j < 3; ++j) wall_numbers_[k][j] = vertex_numbers_.number_of(walls_[k].vertices[j].value());
+  fill(complex, v, walls_, star, wall_numbers_, vertex_numbers_.count());
   for (std::size_t k = walls_.size(); k < star.size(); ++k) complex.remove(star[k]);
   star.resize(walls_.size());
 }
-
-void StarBuilder::make_room(std::size_t walls) {
-  if (names_.size() < 3 * walls) names_.resize(std::bit_ceil(3 * walls));
-  if (wall_numbers_.size() < walls) wall_numbers_.resize(std::bit_ceil(walls));
-}
-
-void EdgeHash::start(std::size_t edges) { entries_.assign(std::bit_ceil(2 * edges), {}); }
 
 }  // namespace curvetet::kernel

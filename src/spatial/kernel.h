@@ -11,6 +11,7 @@
 #include "mesh/vertex_store.h"
 #include "predicates/filters.h"
 #include "predicates/predicates.h"
+#include "spatial/small_marks.h"
 
 namespace curvetet::kernel {
 
@@ -57,21 +58,23 @@ int side(const TetComplex& complex, const AnySites& sites, TetId t, int i, const
 /// Local index of the infinite vertex, or -1.
 inline int infinite_local(const TetComplex& complex, TetId t) { return complex.local(t, kInfinite); }
 
-/// Sign of the tet's volume with p in place of its vertex k, or filters::kUnknown. `not_rounded` where insphere was
-/// not.
+/// Sign of the tet's volume with p in place of its vertex k. `not_rounded` where insphere was not.
 template <bool not_rounded, class AnySites>
 int side_in_place(const AnySites& sites, const TetComplex::Vertices& v, std::size_t k, const Vec3& p) {
   std::array<const Vec3*, 4> at{&sites.position(v[0]), &sites.position(v[1]), &sites.position(v[2]),
                                 &sites.position(v[3])};
   at[k] = &p;
-  if (!not_rounded) return filters::orient3d(*at[0], *at[1], *at[2], *at[3]);
-  const double det = filters::orient3d_value(*at[1] - *at[0], *at[2] - *at[0], *at[3] - *at[0]);
-  return (det > 0) - (det < 0);
+  if (not_rounded) {
+    const double det = filters::orient3d_value(*at[1] - *at[0], *at[2] - *at[0], *at[3] - *at[0]);
+    return (det > 0) - (det < 0);
+  }
+  const int filtered = filters::orient3d(*at[0], *at[1], *at[2], *at[3]);
+  return filtered != filters::kUnknown ? filtered : orient3d(*at[0], *at[1], *at[2], *at[3]);
 }
 
-/// True if the perturbed sphere of a finite tet, on which p is, holds it (see insphere_tie). The vertex that is raised
-/// most decides: p is then outside, and of the others the one in whose place p leaves the tet positive; the next one,
-/// where that tet is flat.
+/// True if the perturbed sphere of a finite tet, on which p is, holds it: insphere_perturbed for a tet that is known to
+/// be positive. The point that is raised most decides: p is then outside, and of the others the one in whose place p
+/// leaves the tet positive; the next one, where that tet is flat.
 template <bool not_rounded, class AnySites>
 bool in_conflict_by_id(const AnySites& sites, const TetComplex::Vertices& v, const Vec3& p, VertexId tie_id) {
   for (unsigned tried = 0;;) {
@@ -84,12 +87,9 @@ bool in_conflict_by_id(const AnySites& sites, const TetComplex::Vertices& v, con
     }
     if (raised == 4) return false;
     const int sign = side_in_place<not_rounded>(sites, v, raised, p);
-    if (sign == filters::kUnknown) break;
     if (sign != 0) return sign > 0;
     tried |= 1U << raised;
   }
-  return insphere_tie({sites.position(v[0]), sites.position(v[1]), sites.position(v[2]), sites.position(v[3]), p},
-                      {sites.tie_id(v[0]), sites.tie_id(v[1]), sites.tie_id(v[2]), sites.tie_id(v[3]), tie_id}) > 0;
 }
 
 /// True if the perturbed sphere of the tet holds p. A ghost is in conflict if p lies strictly beyond its hull facet, or
@@ -202,27 +202,17 @@ class EdgeSquare {
   std::array<std::array<TetId, kMostVertices>, kMostVertices> behind_{};
 };
 
-/// The same for any numbers, with open addressing.
-class EdgeHash {
+/// The same for any numbers.
+class EdgeTable {
  public:
-  void start(std::size_t edges);
-  void enter(std::uint32_t from, std::uint32_t to, TetId t) { entries_[place_of(key(from, to))] = {key(from, to), t}; }
-  TetId behind(std::uint32_t from, std::uint32_t to) const { return entries_[place_of(key(from, to))].tet; }
-  std::size_t bytes() const { return entries_.capacity() * sizeof(Entry); }
+  void start() { table_.start(); }
+  void enter(std::uint32_t from, std::uint32_t to, TetId t) { table_.insert(key(from, to), t); }
+  TetId behind(std::uint32_t from, std::uint32_t to) const { return *table_.find(key(from, to)); }
+  std::size_t bytes() const { return table_.bytes(); }
 
  private:
-  struct Entry {
-    std::uint64_t key = 0;  ///< 0: nothing is here
-    TetId tet;
-  };
-  static std::uint64_t key(std::uint32_t from, std::uint32_t to) { return std::uint64_t{from} << 32U | (to + 1U); }
-  std::size_t place_of(std::uint64_t key) const {
-    const std::size_t mask = entries_.size() - 1;
-    std::size_t at = (key * 0x9E3779B97F4A7C15ULL >> 32U) & mask;
-    while (entries_[at].key != 0 && entries_[at].key != key) at = (at + 1) & mask;
-    return at;
-  }
-  std::vector<Entry> entries_;  ///< a power of two
+  static std::uint64_t key(std::uint32_t from, std::uint32_t to) { return std::uint64_t{from} << 32U | to; }
+  SmallTable<std::uint64_t, TetId> table_;
 };
 
 /// A facet of a cavity's boundary, seen from outside, with its vertices as the tet inside lists them.
@@ -244,83 +234,35 @@ class StarBuilder {
   void replace(TetComplex& complex, VertexId v, std::span<const TetId> tets, std::span<const TetFacet> boundary,
                std::vector<TetId>& star);
   /// Makes the star of v: behind wall k the tet in slot k, whatever is there. Touches nothing but these slots and the
-  /// links of the outer tets to them. held_by(w) is a number that belongs to vertex w: it holds what was written last.
-  template <class HeldBy>
+  /// links of the outer tets to them. `numbers` are those of each wall's vertices, below `numbered`.
   void fill(TetComplex& complex, VertexId v, std::span<const Wall> walls, std::span<const TetId> slots,
-            const HeldBy& held_by);
-  /// The same with numbers that are known: of each wall's vertices, `named` in all.
-  void fill(TetComplex& complex, VertexId v, std::span<const Wall> walls, std::span<const TetId> slots,
-            std::span<const WallNumbers> numbers, std::uint32_t named);
-  /// The same with numbers of its own.
-  void fill(TetComplex& complex, VertexId v, std::span<const Wall> walls, std::span<const TetId> slots) {
-    fill(complex, v, walls, slots, [&](VertexId w) -> std::uint32_t& { return numbers_[w.value() + 2U]; });
-  }
-  /// Makes room for vertices with ids below n; to be called before, but where the caller has the numbers.
-  void cover_vertices(std::size_t n) {
-    if (numbers_.size() < n + 2) numbers_.resize(n + 2, 0);
-  }
-  /// Of the last star: the vertices of the boundary by number, and the numbers of each wall's.
-  std::span<const VertexId> names() const { return std::span(names_).first(named_); }
-  std::span<const WallNumbers> wall_numbers() const { return wall_numbers_; }
-  std::size_t bytes() const {
-    return numbers_.capacity() * sizeof(std::uint32_t) + names_.capacity() * sizeof(VertexId) +
-           wall_numbers_.capacity() * sizeof(WallNumbers) + hash_.bytes();
-  }
+            std::span<const WallNumbers> numbers, std::uint32_t numbered);
+  std::size_t bytes() const { return vertex_numbers_.bytes() + table_.bytes(); }
 
  private:
   /// The new tet, but for its neighbours in the star.
   static void put_behind(const Wall& wall, TetId slot, VertexId v, TetComplex::Tet* all);
-  void make_room(std::size_t walls);
-  void glue(std::span<const WallNumbers> numbers, std::uint32_t named, std::span<const TetId> slots,
-            TetComplex::Tet* all);
   template <class Edges>
   static void glue(std::span<const WallNumbers> numbers, std::span<const TetId> slots, TetComplex::Tet* all,
                    Edges& edges);
 
-  std::vector<std::uint32_t> numbers_;  ///< of v at v + 2 (the infinite vertex wraps to 0)
+  // Of replace.
   std::vector<Wall> walls_;
-  std::vector<VertexId> names_;  ///< the vertex of each number; a power of two
-  std::size_t named_ = 0;
   std::vector<WallNumbers> wall_numbers_;
+  SmallNumbers vertex_numbers_;
+
   EdgeSquare square_;
-  EdgeHash hash_;
+  EdgeTable table_;
 };
 
-template <class HeldBy>
-void StarBuilder::fill(TetComplex& complex, VertexId v, std::span<const Wall> walls, std::span<const TetId> slots,
-                       const HeldBy& held_by) {
-  make_room(walls.size());
-  TetComplex::Tet* const all = complex.tets();
-  const std::size_t mask = names_.size() - 1;
-  std::uint32_t named = 0;
-  for (std::size_t k = 0; k < walls.size(); ++k) {
-    put_behind(walls[k], slots[k], v, all);
-    for (std::size_t j = 0; j < 3; ++j) {
-      // What a vertex holds is its number if the names agree, so that nothing has to be cleared. Branches here would
-      // be mispredicted.
-      std::uint32_t& held = held_by(walls[k].vertices[j]);
-      const std::uint32_t fresh = (held >= named) | (names_[held & mask] != walls[k].vertices[j]);
-      held = (held & (fresh - 1)) | (named & -fresh);
-      names_[held] = walls[k].vertices[j];
-      named += fresh;
-      wall_numbers_[k][j] = held;
-    }
-  }
-  named_ = named;
-  glue(wall_numbers_, named, slots.first(walls.size()), all);
-}
-
 inline void StarBuilder::fill(TetComplex& complex, VertexId v, std::span<const Wall> walls,
-                              std::span<const TetId> slots, std::span<const WallNumbers> numbers, std::uint32_t named) {
-  for (std::size_t k = 0; k < walls.size(); ++k) put_behind(walls[k], slots[k], v, complex.tets());
-  glue(numbers, named, slots.first(walls.size()), complex.tets());
-}
-
-inline void StarBuilder::glue(std::span<const WallNumbers> numbers, std::uint32_t named, std::span<const TetId> slots,
-                              TetComplex::Tet* all) {
-  if (named <= EdgeSquare::kMostVertices) return glue(numbers, slots, all, square_);
-  hash_.start(3 * slots.size());
-  glue(numbers, slots, all, hash_);
+                              std::span<const TetId> slots, std::span<const WallNumbers> numbers,
+                              std::uint32_t numbered) {
+  TetComplex::Tet* const all = complex.tets();
+  for (std::size_t k = 0; k < walls.size(); ++k) put_behind(walls[k], slots[k], v, all);
+  if (numbered <= EdgeSquare::kMostVertices) return glue(numbers, slots.first(walls.size()), all, square_);
+  table_.start();
+  glue(numbers, slots.first(walls.size()), all, table_);
 }
 
 template <class Edges>

@@ -1,4 +1,4 @@
-// Marks on a few of many ids, and numbers for them, for searches of which each thread has its own. Internal to spatial.
+// Tables of a few of many ids, for searches of which each thread has its own. Internal to spatial.
 #pragma once
 
 #include <cstdint>
@@ -6,47 +6,55 @@
 
 namespace curvetet::kernel {
 
-/// States 1, 2 and 3 of ids, forgotten all at once: a table with open addressing. A mark costs a few nanoseconds and no
-/// memory in proportion to the mesh.
-class SmallMarks {
+/// Values by key, forgotten all at once: open addressing. An access costs a few nanoseconds, and there is no memory in
+/// proportion to the mesh.
+template <class Key, class Value>
+class SmallTable {
  public:
-  /// All states become 0.
+  /// No key has a value.
   void start() {
     count_ = 0;
-    if (++epoch_ < kMostEpochs) return;
+    if (++epoch_ != 0) return;
     entries_.assign(entries_.size(), {});
     epoch_ = 1;
   }
-  std::uint32_t state(std::uint32_t id) const {
-    const Entry& entry = entries_[place_of(id)];
-    return entry.stamp >> 2U == epoch_ ? entry.stamp & 3U : 0;
+  std::size_t size() const { return count_; }
+  /// Null if it has none.
+  const Value* find(Key key) const {
+    const Entry& entry = entries_[place_of(key)];
+    return entry.epoch == epoch_ ? &entry.value : nullptr;
   }
-  void set(std::uint32_t id, std::uint32_t state) {
-    Entry& entry = entries_[place_of(id)];
-    const bool fresh = entry.stamp >> 2U != epoch_;
-    entry = {id, epoch_ << 2U | state};
-    if (fresh && 2 * ++count_ > entries_.size()) grow();
+  /// The key's value, `value` if it had none; until the next insertion.
+  Value& insert(Key key, Value value) {
+    Entry* entry = &entries_[place_of(key)];
+    if (entry->epoch == epoch_) return entry->value;
+    if (2 * ++count_ > entries_.size()) {
+      grow();
+      entry = &entries_[place_of(key)];
+    }
+    *entry = {key, epoch_, value};
+    return entry->value;
   }
   std::size_t bytes() const { return entries_.capacity() * sizeof(Entry); }
 
  private:
   struct Entry {
-    std::uint32_t id = 0, stamp = 0;
+    Key key{};
+    std::uint32_t epoch = 0;
+    Value value{};
   };
-  static constexpr std::uint32_t kMostEpochs = 1U << 30U;
-
-  /// Where the id is, or would be.
-  std::size_t place_of(std::uint32_t id) const {
+  /// Where the key is, or would be.
+  std::size_t place_of(Key key) const {
     const std::size_t mask = entries_.size() - 1;
-    std::size_t at = (id * std::uint64_t{0x9E3779B97F4A7C15} >> 32U) & mask;
-    while (entries_[at].stamp >> 2U == epoch_ && entries_[at].id != id) at = (at + 1) & mask;
+    std::size_t at = (key * std::uint64_t{0x9E3779B97F4A7C15} >> 32U) & mask;
+    while (entries_[at].epoch == epoch_ && entries_[at].key != key) at = (at + 1) & mask;
     return at;
   }
   void grow() {
     std::vector<Entry> old(2 * entries_.size());
     old.swap(entries_);
     for (const Entry& entry : old)
-      if (entry.stamp >> 2U == epoch_) entries_[place_of(entry.id)] = entry;
+      if (entry.epoch == epoch_) entries_[place_of(entry.key)] = entry;
   }
 
   std::vector<Entry> entries_ = std::vector<Entry>(256);  ///< a power of two
@@ -54,52 +62,33 @@ class SmallMarks {
   std::uint32_t epoch_ = 1;
 };
 
-/// Numbers 0, 1, 2... for ids in the order in which they are asked for, in the same way.
-class SmallNumbers {
+/// States of ids, 0 at first.
+class SmallMarks {
  public:
-  static constexpr std::uint32_t kNone = 0xFFFFFFFF;
-  /// No id has a number.
-  void start() {
-    count_ = 0;
-    if (++epoch_ != 0) return;
-    entries_.assign(entries_.size(), {});
-    epoch_ = 1;
+  void start() { table_.start(); }
+  std::uint32_t state(std::uint32_t id) const {
+    const std::uint32_t* const found = table_.find(id);
+    return found != nullptr ? *found : 0;
   }
-  std::uint32_t count() const { return count_; }
-  /// kNone if it has none.
-  std::uint32_t find(std::uint32_t id) const {
-    const Entry& entry = entries_[place_of(id)];
-    return entry.epoch == epoch_ ? entry.number : kNone;
-  }
-  /// Gives it the next number if it has none.
-  std::uint32_t number_of(std::uint32_t id) {
-    Entry& entry = entries_[place_of(id)];
-    if (entry.epoch == epoch_) return entry.number;
-    entry = {id, epoch_, count_++};
-    if (2 * std::size_t{count_} > entries_.size()) grow();
-    return count_ - 1;
-  }
-  std::size_t bytes() const { return entries_.capacity() * sizeof(Entry); }
+  void set(std::uint32_t id, std::uint32_t state) { table_.insert(id, state) = state; }
+  std::size_t bytes() const { return table_.bytes(); }
 
  private:
-  struct Entry {
-    std::uint32_t id = 0, epoch = 0, number = 0;
-  };
-  std::size_t place_of(std::uint32_t id) const {
-    const std::size_t mask = entries_.size() - 1;
-    std::size_t at = (id * std::uint64_t{0x9E3779B97F4A7C15} >> 32U) & mask;
-    while (entries_[at].epoch == epoch_ && entries_[at].id != id) at = (at + 1) & mask;
-    return at;
-  }
-  void grow() {
-    std::vector<Entry> old(2 * entries_.size());
-    old.swap(entries_);
-    for (const Entry& entry : old)
-      if (entry.epoch == epoch_) entries_[place_of(entry.id)] = entry;
-  }
+  SmallTable<std::uint32_t, std::uint32_t> table_;
+};
 
-  std::vector<Entry> entries_ = std::vector<Entry>(256);  ///< a power of two
-  std::uint32_t count_ = 0, epoch_ = 1;
+/// Numbers 0, 1, 2... for ids in the order in which they are asked for.
+class SmallNumbers {
+ public:
+  void start() { table_.start(); }
+  std::uint32_t count() const { return static_cast<std::uint32_t>(table_.size()); }
+  bool contains(std::uint32_t id) const { return table_.find(id) != nullptr; }
+  /// The next number if it has none.
+  std::uint32_t number_of(std::uint32_t id) { return table_.insert(id, count()); }
+  std::size_t bytes() const { return table_.bytes(); }
+
+ private:
+  SmallTable<std::uint32_t, std::uint32_t> table_;
 };
 
 }  // namespace curvetet::kernel

@@ -44,7 +44,6 @@ Tetrahedralization::Tetrahedralization(const VertexStore& vertices, std::uint64_
 
 void Tetrahedralization::cover_vertices() {
   if (vertex_tet_.size() < vertices_->size()) vertex_tet_.resize(vertices_->size());
-  star_builder_.cover_vertices(vertices_->size());
 }
 
 TetId Tetrahedralization::locate(Vec3 p, TetId hint) const {

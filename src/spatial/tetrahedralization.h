@@ -60,10 +60,8 @@ struct Cavity {
 struct CavityScratch {
   kernel::SmallMarks marks;
   kernel::SmallNumbers numbers;  ///< of the vertices of the boundary
-  std::vector<TetId> queue, asked;
-  std::size_t bytes() const {
-    return marks.bytes() + numbers.bytes() + (queue.capacity() + asked.capacity()) * sizeof(TetId);
-  }
+  std::vector<TetId> queue;
+  std::size_t bytes() const { return marks.bytes() + numbers.bytes() + queue.capacity() * sizeof(TetId); }
 };
 
 /// One of many insertions at a time: found, then reserved, then committed, then settled.

@@ -12,9 +12,7 @@
 // Many tets are worked on at a time, by all threads: places are found while nothing changes; cavities that are disjoint
 // and do not touch are chosen in order; their stars are made; what is bad of them is queued in order. Batches follow
 // from the mesh alone, so that it does not depend on the number of threads. In a larger batch more cavities disturb
-// each other, and to make the stars takes longer. The tets of a class are put along a space-filling curve and taken
-// from many places of it at once, which then move along it: what comes next is near to what was there before, and in
-// the cache, for waiting for memory is half of the time.
+// each other, and to make the stars takes longer.
 //
 // Rejected: inserting a lattice of points at once. It is faster, but leaves a badly graded seam along the boundary, and
 // graded fields are the rule. Blocks of space with a thread each, whose seams must be done again. Batches of the worst
@@ -28,7 +26,6 @@
 #include <vector>
 
 #include "base/gather.h"
-#include "base/hilbert.h"
 #include "geometry/frame.h"
 #include "predicates/predicates.h"
 #include "quality/measures.h"
@@ -77,17 +74,12 @@ struct Entry {
   TetId tet;
   std::uint32_t stamp = 0;
   std::uint32_t badness = 0;  ///< class
-  std::uint32_t place = 0;    ///< along a space-filling curve
 };
 
 std::uint32_t stamp_of(const TetComplex::Vertices& v) {
   std::uint32_t h = 0;
   for (VertexId x : v) h = (h ^ (h >> 15)) * 0x9E3779B1U + x.value();
   return h;
-}
-
-bool is_current(const TetComplex& complex, const Entry& e) {
-  return complex.is_alive(e.tet) && stamp_of(complex.vertices(e.tet)) == e.stamp;
 }
 
 /// Bad tets in classes of badness, the worst class first.
@@ -104,39 +96,29 @@ class BadTets {
     top_ = std::max<std::size_t>(top_, entry.badness);
   }
 
-  /// About `number` entries of the worst classes, far apart in space: one of every stretch of the curve; the next call
-  /// gives the one after it, whose surroundings are then in the processor's cache. False: all have been taken.
-  bool take(const TetComplex& complex, std::size_t number, std::vector<Entry>& out) {
+  /// About `number` entries of the worst classes that came far apart, so that they are likely to lie far apart: one of
+  /// every stretch, and the next call one further. False: all have been taken.
+  bool take(std::size_t number, std::vector<Entry>& out) {
     out.clear();
-    if (column_ == stretch_ && !open_classes(complex, number)) return false;
+    if (column_ == stretch_ && !open_classes(number)) return false;
     for (std::size_t k = column_; k < open_.size(); k += stretch_) out.push_back(open_[k]);
     ++column_;
     return true;
   }
 
  private:
-  bool open_classes(const TetComplex& complex, std::size_t number) {
+  bool open_classes(std::size_t number) {
     open_.clear();
     while (open_.size() < number) {
-      open_current(complex, classes_[top_]);
+      open_.insert(open_.end(), classes_[top_].begin(), classes_[top_].end());
+      classes_[top_].clear();
       if (top_ == 0) break;
       --top_;
     }
     if (open_.empty()) return false;
-    std::stable_sort(open_.begin(), open_.end(), [](const Entry& a, const Entry& b) { return a.place < b.place; });
     stretch_ = (open_.size() + number - 1) / number;
     column_ = 0;
     return true;
-  }
-
-  /// Most are of tets that are gone.
-  void open_current(const TetComplex& complex, std::vector<Entry>& entries) {
-    constexpr std::size_t kAhead = 16;
-    for (std::size_t k = 0; k < entries.size(); ++k) {
-      if (k + kAhead < entries.size()) complex.prefetch(entries[k + kAhead].tet);
-      if (is_current(complex, entries[k])) open_.push_back(entries[k]);
-    }
-    entries.clear();
   }
 
   std::array<std::vector<Entry>, kClasses> classes_;
@@ -194,11 +176,15 @@ class Refinement {
       if (result_.budget_exhausted) break;
     }
     result_.unmet = static_cast<std::size_t>(
-        std::count_if(unmet_.begin(), unmet_.end(), [this](const Entry& e) { return is_current(complex_, e); }));
+        std::count_if(unmet_.begin(), unmet_.end(), [this](const Entry& e) { return is_current(e); }));
     return result_;
   }
 
  private:
+  bool is_current(const Entry& e) const {
+    return complex_.is_alive(e.tet) && stamp_of(complex_.vertices(e.tet)) == e.stamp;
+  }
+
   std::size_t batch_size() const {
     return std::clamp<std::size_t>(complex_.alive() / kTetsPerAttempt, 1, kMostAttempts);
   }
@@ -213,12 +199,12 @@ class Refinement {
     stretch_.swap(waiting_);
     do {
       for (const Entry& e : stretch_) choose(e);
-    } while (batch_.size() < number && bad_.take(complex_, number, stretch_));
+    } while (batch_.size() < number && bad_.take(number, stretch_));
     return !batch_.empty();
   }
 
   void choose(const Entry& e) {
-    if (!is_current(complex_, e)) return;
+    if (!is_current(e)) return;
     const auto& v = complex_.vertices(e.tet);
     if (std::any_of(v.begin(), v.end(), [&](VertexId x) { return in_batch_[x] == batch_number_; })) {
       waiting_.push_back(e);
@@ -308,16 +294,8 @@ class Refinement {
   void note_if_bad(TetId t, std::vector<Entry>& bad) const {
     if (is_surely_good(t)) return;
     const double badness = judge(t).badness;
-    if (badness <= 1) return;
-    const TetComplex::Vertices& v = complex_.vertices(t);
-    bad.push_back({t, stamp_of(v), static_cast<std::uint32_t>(BadTets::class_of(badness)), place_of(v[0])});
-  }
-
-  std::uint32_t place_of(VertexId v) const {
-    constexpr int kBits = 10;
-    const auto cell = [](double x) { return static_cast<std::uint32_t>((x + 1) * (1 << (kBits - 1))); };
-    const Vec3 p = vertices_.position(v);
-    return static_cast<std::uint32_t>(hilbert_index({cell(p.x), cell(p.y), cell(p.z)}, kBits));
+    if (badness > 1)
+      bad.push_back({t, stamp_of(complex_.vertices(t)), static_cast<std::uint32_t>(BadTets::class_of(badness))});
   }
 
   void queue_all() {

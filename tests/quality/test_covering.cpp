@@ -46,10 +46,11 @@ struct Verdict {
 Verdict judge(const Mesh& mesh) {
   Context context;
   checks::Findings findings;
-  const checks::Topology topology = checks::check_tets(mesh, context, findings);
-  const checks::BoundaryTree tree = checks::boundary_tree(mesh, topology);
+  checks::Topology topology = checks::check_tets(mesh, context, findings);
+  checks::check_closedness(mesh, nullptr, topology, findings);
+  const BoxTree tree = checks::tree_of_boundary(mesh, topology);
   checks::check_self_intersection(mesh, topology, tree, context, findings);
-  return {findings.take().empty(), checks::is_covered_once(mesh, topology, tree)};
+  return {!findings.any_error(), checks::is_covered_once(mesh, topology, tree)};
 }
 
 bool has_vertex_in_foreign_tet(const Mesh& mesh) {
