@@ -7,7 +7,6 @@
 
 #include <array>
 #include <cstdint>
-#include <cstring>
 #include <unordered_map>
 #include <vector>
 
@@ -55,13 +54,8 @@ class TetComplex {
   std::size_t alive() const { return tets_.size() - free_.size(); }
   bool is_alive(TetId t) const { return tets_[t.value()].vertices[0].valid(); }
   bool is_ghost(TetId t) const {
-    using Four [[gnu::vector_size(16)]] = std::uint32_t;
-    Four v;
-    std::memcpy(&v, &tets_[t.value()].vertices, sizeof(v));
-    const auto same = v == kInfinite.value();
-    std::array<std::uint64_t, 2> halves;
-    std::memcpy(&halves, &same, sizeof(same));
-    return (halves[0] | halves[1]) != 0;
+    const Vertices& v = tets_[t.value()].vertices;
+    return (v[0] == kInfinite) | (v[1] == kInfinite) | (v[2] == kInfinite) | (v[3] == kInfinite);
   }
   const Vertices& vertices(TetId t) const { return tets_[t.value()].vertices; }
   const std::array<TetId, 4>& neighbours(TetId t) const { return tets_[t.value()].neighbours; }
