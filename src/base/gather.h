@@ -1,4 +1,4 @@
-// Lists made on many threads, in an order that does not depend on them.
+// Loops in blocks on many threads, and lists that are made so, in an order that does not depend on the threads.
 #pragma once
 
 #include <algorithm>
@@ -7,6 +7,12 @@
 #include "base/context.h"
 
 namespace curvetet {
+
+/// body(begin, end) over the blocks of [0, n).
+template <class Body>
+void in_blocks(const Context& context, std::size_t n, std::size_t block, const Body& body) {
+  parallel_for(context, (n + block - 1) / block, [&](std::size_t k) { body(k * block, std::min(n, (k + 1) * block)); });
+}
 
 /// What body(i, out) appends to `out` for i in [0, n), in the order of i. Each thread takes blocks of `block`.
 template <class T, class Body>

@@ -49,6 +49,11 @@ class GrowingArray {
     if (size_ == capacity_) reserve(std::max<std::size_t>(16, capacity_ + capacity_ / 2));
     ::new (static_cast<void*>(data_ + size_++)) T(value);
   }
+  /// New elements have no value yet.
+  void resize(std::size_t n) {
+    reserve(n);
+    size_ = n;
+  }
 
   std::size_t size() const { return size_; }
   std::size_t capacity() const { return capacity_; }

@@ -9,6 +9,7 @@
 #include <algorithm>
 
 #include "base/error.h"
+#include "base/gather.h"
 
 namespace curvetet {
 
@@ -83,16 +84,21 @@ void TetComplex::start_flood() {
   flood_ += 4;
 }
 
-void TetComplex::reorder(const std::vector<TetId>& order) {
+void TetComplex::reorder(const std::vector<TetId>& order, const Context& context) {
   CURVETET_CHECK(order.size() == alive());
+  constexpr std::size_t kBlock = 8192;
   std::vector<TetId> number(tets_.size());
-  for (std::size_t k = 0; k < order.size(); ++k) number[order[k].value()] = TetId(k);
   GrowingArray<Tet> sorted;
-  sorted.reserve(order.size());
-  for (const TetId t : order) {
-    sorted.push_back(tets_[t.value()]);
-    for (TetId& n : sorted.back().neighbours) n = number[n.value()];
-  }
+  sorted.resize(order.size());
+  in_blocks(context, order.size(), kBlock, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t k = begin; k < end; ++k) number[order[k].value()] = TetId(k);
+  });
+  in_blocks(context, order.size(), kBlock, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t k = begin; k < end; ++k) {
+      sorted[k] = tets_[order[k].value()];
+      for (TetId& n : sorted[k].neighbours) n = number[n.value()];
+    }
+  });
   tets_ = std::move(sorted);
   free_.clear();
 }

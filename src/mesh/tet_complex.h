@@ -10,6 +10,7 @@
 #include <unordered_map>
 #include <vector>
 
+#include "base/context.h"
 #include "base/growing_array.h"
 #include "base/ids.h"
 
@@ -119,7 +120,7 @@ class TetComplex {
 
   void reserve(std::size_t tets);
   /// Renumbers the tets: order[k], all that are alive, becomes tet k.
-  void reorder(const std::vector<TetId>& order);
+  void reorder(const std::vector<TetId>& order, const Context& context);
   std::size_t bytes() const;
 
  private:

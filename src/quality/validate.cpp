@@ -11,6 +11,7 @@
 #include <algorithm>
 #include <numeric>
 
+#include "base/gather.h"
 #include "quality/checks.h"
 #include "quality/measures.h"
 
@@ -75,8 +76,7 @@ bool Findings::any_error() const {
 }
 
 void in_blocks(const Context& context, std::size_t n, const std::function<void(std::size_t, std::size_t)>& body) {
-  parallel_for(context, (n + kBlock - 1) / kBlock,
-               [&](std::size_t block) { body(block * kBlock, std::min(n, (block + 1) * kBlock)); });
+  curvetet::in_blocks(context, n, kBlock, body);
 }
 
 std::vector<double> solid_volumes(const Mesh& mesh) {

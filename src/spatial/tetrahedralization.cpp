@@ -3,13 +3,18 @@
 #include "spatial/tetrahedralization.h"
 
 #include <algorithm>
+#include <functional>
 #include <numeric>
 
+#include "base/gather.h"
 #include "base/hilbert.h"
+#include "base/parallel_sort.h"
 
 namespace curvetet {
 
 namespace {
+
+constexpr std::size_t kBlock = 8192;
 
 std::uint64_t segment_key(VertexId a, VertexId b) {
   return static_cast<std::uint64_t>(std::min(a, b).value()) << 32 | std::max(a, b).value();
@@ -96,13 +101,13 @@ void Tetrahedralization::link_vertices() {
     if (complex_.is_alive(TetId(t))) touch(TetId(t));
 }
 
-void Tetrahedralization::sort_in_space(VertexStore& vertices, VertexId first) {
+void Tetrahedralization::sort_in_space(VertexStore& vertices, VertexId first, const Context& context) {
   CURVETET_CHECK(&vertices == vertices_);
-  std::vector<std::pair<std::uint64_t, VertexId>> along;
-  along.reserve(vertices.size());
-  for (std::size_t v = 0; v < vertices.size(); ++v)
-    along.emplace_back(hilbert_index(vertices.position(VertexId(v))), VertexId(v));
-  std::sort(along.begin(), along.end());
+  std::vector<std::pair<std::uint64_t, VertexId>> along(vertices.size());
+  in_blocks(context, along.size(), kBlock, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t v = begin; v < end; ++v) along[v] = {hilbert_index(vertices.position(VertexId(v))), VertexId(v)};
+  });
+  parallel_sort(context, along, std::less<>());
 
   std::vector<VertexId> order;
   IndexedVector<VertexId, VertexId> number;
@@ -116,29 +121,32 @@ void Tetrahedralization::sort_in_space(VertexStore& vertices, VertexId first) {
     if (!(v < first)) order.push_back(v);
   }
   vertices.reorder(first, order);
-  sort_tets(number, rank);
+  sort_tets(number, rank, context);
 }
 
 /// By the vertex of each that is first along the curve.
 void Tetrahedralization::sort_tets(const IndexedVector<VertexId, VertexId>& number,
-                                   const IndexedVector<VertexId, std::uint32_t>& rank) {
+                                   const IndexedVector<VertexId, std::uint32_t>& rank, const Context& context) {
   std::vector<std::uint32_t> place(complex_.slots());
-  std::vector<std::size_t> next(rank.size() + 1, 0);
-  for (std::size_t t = 0; t < complex_.slots(); ++t) {
-    if (!complex_.is_alive(TetId(t))) continue;
-    place[t] = static_cast<std::uint32_t>(rank.size());
-    for (VertexId& v : complex_.tets()[t].vertices) {
-      if (v == kInfinite) continue;
-      v = number[v];
-      place[t] = std::min(place[t], rank[v]);
+  in_blocks(context, place.size(), kBlock, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t t = begin; t < end; ++t) {
+      if (!complex_.is_alive(TetId(t))) continue;
+      place[t] = static_cast<std::uint32_t>(rank.size());
+      for (VertexId& v : complex_.tets()[t].vertices) {
+        if (v == kInfinite) continue;
+        v = number[v];
+        place[t] = std::min(place[t], rank[v]);
+      }
     }
-    ++next[place[t] + 1];
-  }
+  });
+  std::vector<std::size_t> next(rank.size() + 1, 0);
+  for (std::size_t t = 0; t < place.size(); ++t)
+    if (complex_.is_alive(TetId(t))) ++next[place[t] + 1];
   std::partial_sum(next.begin(), next.end(), next.begin());
   std::vector<TetId> order(complex_.alive());
-  for (std::size_t t = 0; t < complex_.slots(); ++t)
+  for (std::size_t t = 0; t < place.size(); ++t)
     if (complex_.is_alive(TetId(t))) order[next[place[t]]++] = TetId(t);
-  complex_.reorder(order);
+  complex_.reorder(order, context);
   link_vertices();
   star_.clear();
   last_ = TetId();

@@ -112,7 +112,7 @@ class Tetrahedralization {
 
   /// Renumbers all tets, and the vertices from `first` on, which no constraint has, along a Hilbert curve: neighbours
   /// in space become neighbours in memory. The store must be that of the constructor.
-  void sort_in_space(VertexStore& vertices, VertexId first);
+  void sort_in_space(VertexStore& vertices, VertexId first, const Context& context);
 
   // --- queries ---
   const TetComplex& complex() const { return complex_; }
@@ -154,7 +154,8 @@ class Tetrahedralization {
   /// The star in the order of a flood; stops at the first tet that `until` holds for, which becomes the first of `out`.
   template <class Until>
   void flood_star(VertexId v, kernel::SmallMarks& marks, std::vector<TetId>& out, const Until& until) const;
-  void sort_tets(const IndexedVector<VertexId, VertexId>& number, const IndexedVector<VertexId, std::uint32_t>& rank);
+  void sort_tets(const IndexedVector<VertexId, VertexId>& number, const IndexedVector<VertexId, std::uint32_t>& rank,
+                 const Context& context);
   void cover_vertices();  ///< grows the tables by vertex to the store's size
 
   const VertexStore* vertices_;

@@ -14,12 +14,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <iterator>
 #include <numbers>
 #include <optional>
 #include <vector>
 
 #include "base/gather.h"
+#include "base/parallel_sort.h"
 #include "geometry/frame.h"
 #include "predicates/predicates.h"
 #include "quality/measures.h"
@@ -47,6 +49,8 @@ constexpr std::size_t kSlotsPerStar = 200;
 /// facets are long, bad tets are the body's fault and every attempt fails.
 constexpr std::size_t kFailedInsertions = 100;
 
+/// Tets of a list that one thread looks at.
+constexpr std::size_t kBlock = 8192;
 /// Tets or vertices that are looked at before any of them is changed, and how many of these by one thread at a time.
 constexpr std::size_t kBatch = 1024, kGrain = 16;
 
@@ -108,11 +112,16 @@ class Improvement {
   }
 
   double worst_degrees() const {
-    double worst = 1;
-    for (TetId t : below_) worst = std::min(worst, quality(t));
-    for (std::size_t k = 0; below_.empty() && k < complex_.slots(); ++k) {
-      if (is_inside(TetId(k))) worst = std::min(worst, quality(TetId(k)));
-    }
+    const bool all = below_.empty();
+    const std::size_t n = all ? complex_.slots() : below_.size();
+    std::vector<double> least((n + kBlock - 1) / kBlock, 1);
+    in_blocks(context_, n, kBlock, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t k = begin; k < end; ++k) {
+        const TetId t = all ? TetId(k) : below_[k];
+        if (is_inside(t)) least[begin / kBlock] = std::min(least[begin / kBlock], quality(t));
+      }
+    });
+    const double worst = least.empty() ? 1 : *std::min_element(least.begin(), least.end());
     return std::asin(std::clamp(worst, 0.0, 1.0)) / kDegree;
   }
 
@@ -148,15 +157,17 @@ class Improvement {
   /// The tets inside that are asked for, ascending.
   template <class Asked>
   std::vector<TetId> all_inside(const Asked& asked) const {
-    return gather<TetId>(context_, complex_.slots(), 8192, [&](std::size_t k, std::vector<TetId>& out) {
+    return gather<TetId>(context_, complex_.slots(), kBlock, [&](std::size_t k, std::vector<TetId>& out) {
       if (is_inside(TetId(k)) && asked(TetId(k))) out.push_back(TetId(k));
     });
   }
 
   /// Those of a list that are there and below the goal, ascending, each once.
   void tidy(std::vector<TetId>& tets) const {
-    std::erase_if(tets, [this](TetId t) { return !is_inside(t) || quality(t) >= goal_; });
-    std::sort(tets.begin(), tets.end());
+    tets = gather<TetId>(context_, tets.size(), kBlock, [&](std::size_t k, std::vector<TetId>& out) {
+      if (is_inside(tets[k]) && quality(tets[k]) < goal_) out.push_back(tets[k]);
+    });
+    parallel_sort(context_, tets, std::less<>());
     tets.erase(std::unique(tets.begin(), tets.end()), tets.end());
   }
 
@@ -177,7 +188,7 @@ class Improvement {
 
   void collect_bad_near_touched() {
     bad_.clear();
-    std::sort(touched_.begin(), touched_.end());
+    parallel_sort(context_, touched_, std::less<>());
     touched_.erase(std::unique(touched_.begin(), touched_.end()), touched_.end());
     if (touched_.size() > complex_.slots() / kSlotsPerStar) {
       collect_bad_with_touched();
@@ -282,7 +293,7 @@ class Improvement {
         if (vertices_.owner(v).kind == OwnerKind::interior) movable_.push_back(v);
       }
     }
-    std::sort(movable_.begin(), movable_.end());
+    parallel_sort(context_, movable_, std::less<>());
     movable_.erase(std::unique(movable_.begin(), movable_.end()), movable_.end());
   }
 

@@ -11,21 +11,28 @@
 //
 // Many tets are worked on at a time, by all threads: places are found while nothing changes; cavities that are disjoint
 // and do not touch are chosen in order; their stars are made; what is bad of them is queued in order. Batches follow
-// from the mesh alone, so that it does not depend on the number of threads. In a larger batch more cavities disturb
-// each other, and to make the stars takes longer.
+// from the mesh alone, so that it does not depend on the number of threads. The tets of a class are put along a
+// space-filling curve, cut into stretches, and the first of each stretch make a batch, then the second ones, and so on:
+// what comes next is near to what was there before, and in the cache. In a large mesh waiting for memory would
+// otherwise be half of the time.
 //
 // Rejected: inserting a lattice of points at once. It is faster, but leaves a badly graded seam along the boundary, and
 // graded fields are the rule. Blocks of space with a thread each, whose seams must be done again. Batches of the worst
-// tets as they were queued: most of these are neighbours.
+// tets as they were queued: most of these are neighbours. Full batches, topped up with the next ones of each stretch:
+// one in fourteen was disturbed, in place of one in two hundred.
 #include "volume/refine.h"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <optional>
+#include <tuple>
 #include <vector>
 
 #include "base/gather.h"
+#include "base/hilbert.h"
+#include "base/parallel_sort.h"
+#include "base/team.h"
 #include "geometry/frame.h"
 #include "predicates/predicates.h"
 #include "quality/measures.h"
@@ -40,8 +47,9 @@ constexpr double kRadiusOverSize = 0.75;
 constexpr double kVertexDistance = 0.6;
 /// Least distance of a new vertex to a locked facet, over the size.
 constexpr double kFacetDistance = 0.4;
-/// Vertices of a batch: so few among so many tets that they seldom disturb each other.
-constexpr std::size_t kTetsPerAttempt = 2000, kMostAttempts = 256;
+/// Places along the curve at which batches are taken: so few in so many tets that cavities seldom disturb each other,
+/// and so few that the surroundings of all stay in the cache. Entries between them, at least, for the first reason.
+constexpr std::size_t kTetsPerFront = 1000, kMostFronts = 128, kLeastStretch = 4;
 /// Steps of a walk; far above what a walk within one tet's neighbourhood takes.
 constexpr int kWalkSteps = 400;
 
@@ -74,6 +82,7 @@ struct Entry {
   TetId tet;
   std::uint32_t stamp = 0;
   std::uint32_t badness = 0;  ///< class
+  std::uint32_t place = 0;    ///< along a space-filling curve
 };
 
 std::uint32_t stamp_of(const TetComplex::Vertices& v) {
@@ -96,35 +105,39 @@ class BadTets {
     top_ = std::max<std::size_t>(top_, entry.badness);
   }
 
-  /// About `number` entries of the worst classes that came far apart, so that they are likely to lie far apart: one of
-  /// every stretch, and the next call one further. False: all have been taken.
-  bool take(std::size_t number, std::vector<Entry>& out) {
+  /// An entry of each of `fronts` stretches of the curve, far apart in space; the next call gives those after them,
+  /// whose surroundings are then in the processor's cache. False: all have been taken. prepare(entries) puts the worst
+  /// classes in order, when their turn comes.
+  template <class Prepare>
+  bool take(std::size_t fronts, const Prepare& prepare, std::vector<Entry>& out) {
     out.clear();
-    if (column_ == stretch_ && !open_classes(number)) return false;
+    if (column_ == stretch_ && !open_classes(fronts, prepare)) return false;
     for (std::size_t k = column_; k < open_.size(); k += stretch_) out.push_back(open_[k]);
     ++column_;
     return true;
   }
 
  private:
-  bool open_classes(std::size_t number) {
+  template <class Prepare>
+  bool open_classes(std::size_t fronts, const Prepare& prepare) {
     open_.clear();
-    while (open_.size() < number) {
+    for (bool is_last = false; !is_last && open_.size() < fronts;) {
       open_.insert(open_.end(), classes_[top_].begin(), classes_[top_].end());
       classes_[top_].clear();
-      if (top_ == 0) break;
-      --top_;
+      is_last = top_ == 0;
+      if (!is_last) --top_;
+      if (is_last || open_.size() >= fronts) prepare(open_);
     }
     if (open_.empty()) return false;
-    stretch_ = (open_.size() + number - 1) / number;
+    stretch_ = std::max(kLeastStretch, (open_.size() + fronts - 1) / fronts);
     column_ = 0;
     return true;
   }
 
   std::array<std::vector<Entry>, kClasses> classes_;
   std::size_t top_ = 0;
-  std::vector<Entry> open_;  ///< of the classes that are being taken
-  std::size_t stretch_ = 0, column_ = 0;
+  std::vector<Entry> open_;               ///< of the classes that are being taken
+  std::size_t stretch_ = 0, column_ = 0;  ///< length of the stretches, entries of each that were taken
 };
 
 /// What is wrong with a tet, and what its mending needs.
@@ -162,7 +175,8 @@ class Refinement {
         options_(options),
         context_(context),
         has_local_sizes_(field.options().callback || !field.options().solid_size.empty()),
-        scratch_(worker_count(context)) {}
+        team_(context),
+        scratch_(team_.size()) {}
 
   Result<RefineResult> run() {
     measure_vertices();
@@ -185,22 +199,35 @@ class Refinement {
     return complex_.is_alive(e.tet) && stamp_of(complex_.vertices(e.tet)) == e.stamp;
   }
 
-  std::size_t batch_size() const {
-    return std::clamp<std::size_t>(complex_.alive() / kTetsPerAttempt, 1, kMostAttempts);
-  }
-
   /// Of the worst tets, some that have no vertex in common; others wait for the next batch. False: there are none.
   bool choose_batch() {
-    const std::size_t number = batch_size();
+    const std::size_t fronts = std::clamp<std::size_t>(complex_.alive() / kTetsPerFront, 1, kMostFronts);
     batch_.clear();
     ++batch_number_;
     in_batch_.resize(vertices_.size(), 0);
-    stretch_.clear();
-    stretch_.swap(waiting_);
+    column_.clear();
+    column_.swap(waiting_);
     do {
-      for (const Entry& e : stretch_) choose(e);
-    } while (batch_.size() < number && bad_.take(number, stretch_));
+      for (const Entry& e : column_) choose(e);
+    } while (batch_.empty() && bad_.take(
+                                   fronts, [this](std::vector<Entry>& entries) { put_in_order(entries); }, column_));
     return !batch_.empty();
+  }
+
+  /// Along the curve; those of tets that are gone, which most are, are left out.
+  void put_in_order(std::vector<Entry>& entries) {
+    constexpr std::size_t kAhead = 16;
+    is_current_.resize(entries.size());
+    in_parallel(entries.size(), 256, [&](std::size_t k, Scratch&) {
+      if (k + kAhead < entries.size()) complex_.prefetch(entries[k + kAhead].tet);
+      is_current_[k] = is_current(entries[k]) ? 1 : 0;
+    });
+    std::size_t kept = 0;
+    for (std::size_t k = 0; k < entries.size(); ++k)
+      if (is_current_[k] != 0) entries[kept++] = entries[k];
+    entries.resize(kept);
+    parallel_sort(context_, entries,
+                  [](const Entry& a, const Entry& b) { return std::tie(a.place, a.tet) < std::tie(b.place, b.tet); });
   }
 
   void choose(const Entry& e) {
@@ -217,10 +244,7 @@ class Refinement {
   /// body(i, scratch) for i below n, some at a time.
   template <class Body>
   void in_parallel(std::size_t n, std::size_t grain, const Body& body) {
-    parallel_for(context_, (n + grain - 1) / grain, [&](std::size_t block, std::size_t worker) {
-      const std::size_t end = std::min(n, (block + 1) * grain);
-      for (std::size_t i = block * grain; i < end; ++i) body(i, scratch_[worker]);
-    });
+    team_.run(n, grain, [&](std::size_t i, std::size_t worker) { body(i, scratch_[worker]); });
   }
 
   // --- what is bad ---
@@ -294,8 +318,16 @@ class Refinement {
   void note_if_bad(TetId t, std::vector<Entry>& bad) const {
     if (is_surely_good(t)) return;
     const double badness = judge(t).badness;
-    if (badness > 1)
-      bad.push_back({t, stamp_of(complex_.vertices(t)), static_cast<std::uint32_t>(BadTets::class_of(badness))});
+    if (badness <= 1) return;
+    const TetComplex::Vertices& v = complex_.vertices(t);
+    bad.push_back({t, stamp_of(v), static_cast<std::uint32_t>(BadTets::class_of(badness)), place_of(v[0])});
+  }
+
+  std::uint32_t place_of(VertexId v) const {
+    constexpr int kBits = 10;
+    const auto cell = [](double x) { return static_cast<std::uint32_t>((x + 1) * (1 << (kBits - 1))); };
+    const Vec3 p = vertices_.position(v);
+    return static_cast<std::uint32_t>(hilbert_index({cell(p.x), cell(p.y), cell(p.z)}, kBits));
   }
 
   void queue_all() {
@@ -311,7 +343,7 @@ class Refinement {
   /// For all of the batch, as the mesh is now.
   void find_places() {
     if (attempts_.size() < batch_.size()) attempts_.resize(batch_.size());
-    in_parallel(batch_.size(), 8, [&](std::size_t k, Scratch& scratch) {
+    in_parallel(batch_.size(), 2, [&](std::size_t k, Scratch& scratch) {
       Attempt& attempt = attempts_[k];
       attempt.entry = batch_[k];
       attempt.judgement = judge(attempt.entry.tet);
@@ -464,7 +496,7 @@ class Refinement {
   }
 
   void commit_selected() {
-    in_parallel(selected_.size(), 8, [&](std::size_t k, Scratch& scratch) {
+    in_parallel(selected_.size(), 2, [&](std::size_t k, Scratch& scratch) {
       Attempt& attempt = *selected_[k];
       mesh_.commit(attempt.insertion, scratch.stars);
       attempt.bad.clear();
@@ -486,11 +518,13 @@ class Refinement {
   const SizeField& field_;
   const RefineOptions& options_;
   Context& context_;
-  bool has_local_sizes_;          ///< that do not follow the grading
+  bool has_local_sizes_;  ///< that do not follow the grading
+  Team team_;
   std::vector<Scratch> scratch_;  ///< by worker
   IndexedVector<VertexId, double> vertex_size_;
   BadTets bad_;
-  std::vector<Entry> batch_, waiting_, unmet_, stretch_;
+  std::vector<Entry> batch_, waiting_, unmet_, column_;
+  std::vector<char> is_current_;                     ///< of the entries that are put in order
   IndexedVector<VertexId, std::uint32_t> in_batch_;  ///< the last batch with a tet at the vertex
   std::vector<Attempt> attempts_;                    ///< of the batch, in its order
   std::vector<Attempt*> selected_;
@@ -506,7 +540,7 @@ Result<RefineResult> refine_interior(Tetrahedralization& mesh, VertexStore& vert
   // Its lists are gone before the sorting needs memory.
   Result<RefineResult> result = Refinement(mesh, vertices, field, options, context).run();
   if (result.ok()) {
-    mesh.sort_in_space(vertices, first);
+    mesh.sort_in_space(vertices, first, context);
   } else {
     mesh.link_vertices();
   }

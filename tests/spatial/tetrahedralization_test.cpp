@@ -365,7 +365,7 @@ TEST(SortInSpace, ChangesNumbersOnly) {
   };
   const double before = length_of_steps();
   const Vec3 fixed = store.position(VertexId(1999));
-  mesh.sort_in_space(store, first);
+  mesh.sort_in_space(store, first, context);
   expect_valid(mesh, false);
   EXPECT_EQ(tets_by_place(mesh), tets);
   EXPECT_EQ(mesh.complex().alive(), mesh.complex().slots());

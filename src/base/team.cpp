@@ -1,0 +1,115 @@
+// A phase is a number of blocks in each share that nobody has claimed. Whoever lowers it has a block, and with it the
+// right to read what the phase does: that changes only when all blocks are finished. So there is nothing to keep apart
+// phases by, and a helper that wakes late finds either no block or one of the present phase.
+//
+// Rejected: a parallel_for of the thread library for each phase. To wake its threads takes 10 to 50 microseconds, as
+// long as the phases of refinement themselves. A barrier that all threads must reach: one that the machine has put
+// aside would hold up all others.
+#include "base/team.h"
+
+#include <system_error>
+#include <utility>
+
+namespace curvetet {
+
+namespace {
+
+constexpr std::uint32_t kClosed = UINT32_MAX;
+/// Looks for a block before a helper sleeps; the first ones without giving up the core.
+constexpr int kLooks = 20000, kLooksAwake = 2000;
+
+void pause_briefly() {
+#if defined(__x86_64__) || defined(__i386__)
+  __builtin_ia32_pause();
+#endif
+}
+
+void wait_briefly(int looks) {
+  if (looks < kLooksAwake) {
+    pause_briefly();
+  } else {
+    std::this_thread::yield();
+  }
+}
+
+}  // namespace
+
+Team::~Team() {
+  for (Share& share : shares_) {
+    share.unclaimed.store(kClosed, std::memory_order_release);
+    share.unclaimed.notify_all();
+  }
+  for (std::thread& helper : helpers_) helper.join();
+}
+
+/// A machine that refuses a thread is short of them: those there are will do.
+void Team::start() {
+  shares_ = std::vector<Share>(size_);
+  helpers_.reserve(size_ - 1);
+  try {
+    while (helpers_.size() + 1 < size_) helpers_.emplace_back(&Team::help, this, helpers_.size() + 1);
+  } catch (const std::system_error&) {
+  }
+}
+
+void Team::run_blocks(std::size_t blocks, Job job) {
+  if (size_ == 1 || blocks < 2) {
+    for (std::size_t b = 0; b < blocks; ++b) job.call(job.self, b, 0);
+    return;
+  }
+  if (shares_.empty()) start();
+  job_ = job;
+  unfinished_.store(static_cast<std::uint32_t>(blocks), std::memory_order_relaxed);
+  for (std::size_t w = size_; w-- > 0;) {
+    const std::size_t begin = w * blocks / size_, end = (w + 1) * blocks / size_;
+    shares_[w].end = static_cast<std::uint32_t>(end);
+    shares_[w].unclaimed.store(static_cast<std::uint32_t>(end - begin), std::memory_order_release);
+    shares_[w].unclaimed.notify_all();
+  }
+  for (std::uint32_t block; claim(0, block);) work(block, 0);
+  for (int looks = 0; unfinished_.load(std::memory_order_acquire) != 0; ++looks) wait_briefly(looks);
+  if (failure_) std::rethrow_exception(std::exchange(failure_, nullptr));
+}
+
+/// Takes a block of the worker's own share, or else of another one, if there is one.
+bool Team::claim(std::size_t worker, std::uint32_t& block) {
+  for (std::size_t k = 0; k < size_; ++k) {
+    Share& share = shares_[(worker + k) % size_];
+    std::uint32_t left = share.unclaimed.load(std::memory_order_relaxed);
+    while (left != 0 && left != kClosed) {
+      if (share.unclaimed.compare_exchange_weak(left, left - 1, std::memory_order_acquire)) {
+        block = share.end - left;
+        return true;
+      }
+    }
+  }
+  return false;
+}
+
+void Team::work(std::uint32_t block, std::size_t worker) {
+  try {
+    job_.call(job_.self, block, worker);
+  } catch (...) {
+    const std::lock_guard lock(failure_lock_);
+    failure_ = std::current_exception();
+  }
+  unfinished_.fetch_sub(1, std::memory_order_release);
+}
+
+void Team::help(std::size_t worker) {
+  std::atomic<std::uint32_t>& own = shares_[worker].unclaimed;
+  int looks = 0;
+  while (own.load(std::memory_order_relaxed) != kClosed) {
+    if (std::uint32_t block; claim(worker, block)) {
+      work(block, worker);
+      looks = 0;
+    } else if (++looks < kLooks) {
+      wait_briefly(looks);
+    } else {
+      own.wait(0, std::memory_order_relaxed);
+      looks = 0;
+    }
+  }
+}
+
+}  // namespace curvetet
