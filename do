@@ -96,8 +96,8 @@ bench() {
   done
   say "Whole meshings"
   build/bench/bench/make_bodies out/bodies
-  python3 scripts/benchmark.py --body out/bodies/bulk.brep --sizes 0.0149,0.0107 --curvetet build/bench/apps/curvetet/curvetet \
-    --out out/benchmark --page docs/benchmarks.md
+  python3 scripts/benchmark.py --body out/bodies/bulk.brep --hole 0.5,0.5,0.5 --sizes 0.06,0.03,0.0149,0.0107 \
+    --curvetet build/bench/apps/curvetet/curvetet --out out/benchmark --page docs/benchmarks.md
   say "Surfaces"
   python3 scripts/benchmark_surfaces.py --bodies out/bodies --curvetet build/bench/apps/curvetet/curvetet --out out/surfaces \
     --page docs/benchmarks.md
@@ -113,7 +113,7 @@ help() {
 ./do build    Release build in build/release
 ./do demo     mesh the example body and draw it, into out/
 ./do test     build, all tests, format, room order, clang-tidy, all tests under the sanitizers
-./do bench    benchmarks of the kernel, and of whole meshings beside gmsh (into docs/benchmarks.md)
+./do bench    benchmarks of the kernel, and of whole meshings beside peers (into docs/benchmarks.md)
 ./do format   clang-format over all sources
 ./do lint     format, room order and clang-tidy only
 ./do clean    remove build/ and out/

@@ -1,4 +1,4 @@
-// Predicates by rung, building by point cloud, single insertion, memory per tet.
+// Predicates by rung, building by point cloud, location, cavities, single insertion, memory per tet.
 #include <benchmark/benchmark.h>
 
 #include <boost/multiprecision/cpp_int.hpp>
@@ -92,6 +92,52 @@ BENCHMARK(build)->ArgsProduct({{0, 1, 2, 3, 4, 5}, {100000}})->Unit(benchmark::k
 BENCHMARK(build)->ArgsProduct({{0, 1, 2, 3, 4}, {1000000}})->Unit(benchmark::kMillisecond);
 BENCHMARK(build)->Args({0, 4000000})->Unit(benchmark::kMillisecond);
 
+VertexId near_vertex(const Tetrahedralization& mesh, Vec3 p) {
+  const TetId t = mesh.locate(p);
+  return mesh.complex().vertex(t, mesh.complex().vertex(t, 0) == kInfinite ? 1 : 0);
+}
+
+/// Random points in a cube, the first 100000 of them in a tetrahedralization, with a vertex near each of the others.
+struct Waiting {
+  static constexpr std::size_t kInserted = 100000, kWaiting = 10000;
+  Waiting() {
+    const std::vector<VertexId> ids = all_vertices(store);
+    CURVETET_CHECK(mesh.build(std::span(ids).first(kInserted), Context()).ok());
+    for (std::size_t k = 0; k < kWaiting; ++k) near.push_back(near_vertex(mesh, store.position(vertex(k))));
+  }
+  static VertexId vertex(std::size_t k) { return VertexId(kInserted + k); }
+
+  VertexStore store = make_store(make_cloud(Cloud::cube, kInserted + kWaiting));
+  Tetrahedralization mesh{store, 1};
+  std::vector<VertexId> near;
+};
+
+void locate(benchmark::State& state) {
+  const Waiting waiting;
+  const bool hint = state.range(0) != 0;
+  std::size_t k = 0;
+  for (auto _ : state) {
+    const Vec3 p = waiting.store.position(Waiting::vertex(k));
+    benchmark::DoNotOptimize(waiting.mesh.locate(p, hint ? waiting.mesh.tet_of(waiting.near[k]) : TetId()));
+    k = (k + 1) % Waiting::kWaiting;
+  }
+  state.SetItemsProcessed(state.iterations());
+}
+BENCHMARK(locate)->ArgName("hint")->Arg(1)->Arg(0);
+
+void find_cavity(benchmark::State& state) {
+  const Waiting waiting;
+  std::size_t k = 0, tets = 0;
+  for (auto _ : state) {
+    const Cavity cavity = waiting.mesh.find_cavity(Waiting::vertex(k), waiting.mesh.tet_of(waiting.near[k]));
+    tets += cavity.tets.size();
+    k = (k + 1) % Waiting::kWaiting;
+  }
+  state.SetItemsProcessed(state.iterations());
+  state.counters["tets/cavity"] = static_cast<double>(tets) / static_cast<double>(state.iterations());
+}
+BENCHMARK(find_cavity);
+
 /// find_cavity and commit with all their judging, as refinement uses them: the hint is a tet at a near vertex.
 void insert_one_by_one(benchmark::State& state) {
   const std::vector<Vec3> points = make_cloud(Cloud::cube, 40000);
@@ -103,10 +149,7 @@ void insert_one_by_one(benchmark::State& state) {
     Tetrahedralization mesh(store, 1);
     if (!mesh.build(std::span(ids).first(20000), context).ok()) state.SkipWithError("no tetrahedralization");
     std::vector<VertexId> near(ids.size());
-    for (std::size_t k = 20000; k < ids.size(); ++k) {
-      const TetId t = mesh.locate(points[k]);
-      near[k] = mesh.complex().vertex(t, mesh.complex().vertex(t, 0) == kInfinite ? 1 : 0);
-    }
+    for (std::size_t k = 20000; k < ids.size(); ++k) near[k] = near_vertex(mesh, points[k]);
     state.ResumeTiming();
     for (std::size_t k = 20000; k < ids.size(); ++k) mesh.insert(ids[k], mesh.tet_of(near[k]));
   }

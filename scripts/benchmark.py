@@ -1,14 +1,15 @@
 #!/usr/bin/env python3
-"""Whole meshings, from the CAD file to the mesh file, beside peers at the same number of tets: time, memory and quality.
+"""Whole meshings, from the CAD file to the mesh file, beside peers: time, memory and quality, as a table and plots.
 
-Peers are Debian's gmsh with its HXT and its Delaunay algorithm; if it is not installed curvetet is measured alone. gmsh gets the
-size; curvetet the size at which it makes as many tets as gmsh's HXT, within two hundredths, which is looked for first. All run on one
+Peers are Debian's gmsh with its HXT and its Delaunay algorithm, netgen, and tetgen, which fills curvetet's surface and does not read
+CAD; one that is not installed is left out, and the page says so. gmsh and netgen get the size; curvetet the size at which it makes as
+many tets as gmsh's HXT, within two hundredths, which is looked for first; tetgen a largest volume for that size. All run on one
 thread, curvetet then on all, in turn, so that what else the machine does meets all alike. Times are those of the clock, memory
-is the most a process had; the table gives medians. curvetet checks its mesh in that time, gmsh does not. A program that has taken
-more than a minute is not run again.
+is the most a process had; the table gives medians. curvetet checks its mesh in that time, its peers do not. A program that has taken
+more than a minute is not run again, nor at smaller sizes. Sizes are given from the largest down.
 
-    scripts/benchmark.py --body out/bodies/bulk.brep --sizes 0.0149,0.0107 --curvetet build/bench/apps/curvetet/curvetet \\
-        --out out/benchmark --page docs/benchmarks.md
+    scripts/benchmark.py --body out/bodies/bulk.brep --hole 0.5,0.5,0.5 --sizes 0.06,0.03,0.0149,0.0107 \\
+        --curvetet build/bench/apps/curvetet/curvetet --out out/benchmark --page docs/benchmarks.md
 """
 import argparse
 import os
@@ -19,22 +20,27 @@ import subprocess
 import sys
 import time
 
-from compare import write_page
+import compare
+import svg_plot
 from corpus import gmsh_command, read_json, run
 
 CLOSE = 0.02
 ROUNDS = 8  # of the search for the size
 MOST_SECONDS = 60  # that a program may have taken before it is run once more
+VOLUME_OVER_CUBE = 0.18  # tetgen's largest volume over the cube of curvetet's size, for about as many tets
+SHOWN_SHARE = 0.03  # of the time, from which a stage has a part of its own in the plot
 
 
 def parse_arguments():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--body", required=True, type=pathlib.Path, help="CAD file, as bench/make_bodies writes")
+    parser.add_argument("--body", required=True, type=pathlib.Path, help="CAD file, as bench/make_bodies writes; netgen gets "
+                        "the STEP file beside it")
+    parser.add_argument("--hole", default="", help="x,y,z within a hollow of the body, which tetgen is told of")
     parser.add_argument("--sizes", required=True, help="largest edges for gmsh, separated by commas")
     parser.add_argument("--runs", type=int, default=5)
     parser.add_argument("--curvetet", required=True, type=pathlib.Path)
     parser.add_argument("--out", required=True, type=pathlib.Path)
-    parser.add_argument("--page", type=pathlib.Path, help="markdown file whose table is replaced")
+    parser.add_argument("--page", type=pathlib.Path, help="markdown file whose table is replaced; plots go to pictures/ beside it")
     return parser.parse_args()
 
 
@@ -49,9 +55,40 @@ def measure(command):
     return time.monotonic() - start, usage.ru_maxrss / 1000, usage.ru_utime + usage.ru_stime
 
 
+def medit_block(lines, keyword):
+    """Lines of a keyword, split into words."""
+    at = lines.index(keyword)
+    return [line.split() for line in lines[at + 2:at + 2 + int(lines[at + 1])]]
+
+
+def write_smesh(medit, smesh, hole):
+    """The boundary of a mesh as tetgen reads it."""
+    lines = medit.read_text().split("\n")
+    points, triangles = medit_block(lines, "Vertices"), medit_block(lines, "Triangles")
+    used = sorted({int(corner) for triangle in triangles for corner in triangle[:3]})
+    number = {point: k + 1 for k, point in enumerate(used)}
+    out = [f"{len(used)} 3 0 0", *(f"{k + 1} {' '.join(points[point - 1][:3])}" for k, point in enumerate(used)),
+           f"{len(triangles)} 0", *(f"3 {' '.join(str(number[int(corner)]) for corner in t[:3])}" for t in triangles)]
+    out += ["1", f"1 {hole.replace(',', ' ')}"] if hole else ["0"]
+    smesh.write_text("\n".join([*out, "0"]) + "\n")
+
+
+def write_medit(stem, medit):
+    """tetgen's files as one that curvetet reads: its own Medit files have a wrong number of triangles."""
+    def rows(suffix):
+        lines = [line.split() for line in stem.with_suffix(suffix).read_text().split("\n") if line and not line.startswith("#")]
+        return lines[1:1 + int(lines[0][0])]
+
+    points, tets = rows(".1.node"), rows(".1.ele")
+    medit.write_text("\n".join(["MeshVersionFormatted 2", "Dimension 3", "Vertices", str(len(points)),
+                                *(" ".join(p[1:4]) + " 0" for p in points), "Tetrahedra", str(len(tets)),
+                                *(" ".join(t[1:5]) + " 1" for t in tets), "End"]) + "\n")
+
+
 class Benchmark:
     def __init__(self, arguments):
         self.a = arguments
+        self.slow = set()  # programs that have taken too long at a larger size
 
     def own(self, size, threads):
         return [self.a.curvetet, "mesh", self.a.body, "-o", self.a.out / f"own{threads}.msh", "-q", "--threads", threads, "--size",
@@ -63,7 +100,22 @@ class Benchmark:
     def gmsh(self, size, algorithm):
         return [*gmsh_command(self.a.body, repr(size), self.a.out / f"gmsh{algorithm}.msh", 0, algorithm), "-bin"]
 
-    def quality(self, mesh):
+    def tetgen(self, size):
+        """The command, once its input is there."""
+        medit, smesh = self.a.out / "surface.mesh", self.a.out / "tetgen.smesh"
+        measure([self.a.curvetet, "mesh", self.a.body, "-o", medit, "-q", "--size", repr(size), "--curvature", 0, "--no-refine",
+                 "--no-improve"])
+        write_smesh(medit, smesh, self.a.hole)
+        return ["tetgen", f"-pYq1.2Qa{VOLUME_OVER_CUBE * size**3:.12f}", smesh]
+
+    def quality(self, name):
+        """Of the mesh that the program has written: tets, mean radius ratio, worst dihedral angle."""
+        mesh = self.a.out / {"gmsh, HXT": "gmsh10.msh", "gmsh, Delaunay": "gmsh1.msh", "netgen": "netgen.msh",
+                             "tetgen, volume only": "tetgen.mesh", "curvetet": "own1.msh"}.get(name, f"own{os.cpu_count()}.msh")
+        if name == "netgen":
+            compare.mend_netgen(mesh)
+        elif name.startswith("tetgen"):
+            write_medit(self.a.out / "tetgen", mesh)
         _, out, _, _ = run([self.a.curvetet, "check", "--json", mesh], None, 0)
         found = read_json(out)
         if not found or not found["counts"]["tets"]:
@@ -80,44 +132,85 @@ class Benchmark:
             size *= (tets / wanted) ** (1 / 3)
         sys.exit(f"no size found that makes {wanted} tets")
 
-    def rows(self, size):
-        commands = {}
+    def commands(self, size):
+        """By name, and curvetet's size."""
+        commands, own_size, step = {}, size, self.a.body.with_suffix(".step")
         if shutil.which("gmsh"):
-            commands = {"gmsh, HXT": self.gmsh(size, 10), "gmsh, Delaunay": self.gmsh(size, 1)}
+            commands["gmsh, HXT"] = self.gmsh(size, 10)
             measure(commands["gmsh, HXT"])
-            size = self.matching_size(size, self.quality(self.a.out / "gmsh10.msh")[0])
-        own = {"curvetet": 1, f"curvetet, {os.cpu_count()} threads": os.cpu_count()}
-        commands.update((name, self.own(size, threads)) for name, threads in own.items())
+            own_size = self.matching_size(size, self.quality("gmsh, HXT")[0])
+            commands["gmsh, Delaunay"] = self.gmsh(size, 1)
+        if compare.PYTHON and step.is_file():
+            commands["netgen"] = [compare.PYTHON, "-c", compare.NETGEN, step, repr(size), self.a.out / "netgen.msh", 0]
+        if shutil.which("tetgen"):
+            commands["tetgen, volume only"] = self.tetgen(own_size)
+        commands["curvetet"] = self.own(own_size, 1)
+        commands[f"curvetet, {os.cpu_count()} threads"] = self.own(own_size, os.cpu_count())
+        return {name: command for name, command in commands.items() if name not in self.slow}
+
+    def rows(self, size):
+        """A dict for each program."""
+        commands = self.commands(size)
         measured, stages = {name: [] for name in commands}, {name: [] for name in commands}
         for _ in range(self.a.runs):
             for name, command in commands.items():
                 if sum(seconds for seconds, _, _ in measured[name]) > MOST_SECONDS:
+                    self.slow.add(name)
                     continue
                 measured[name].append(measure(command))
-                if name in own:
-                    stages[name].append({s["stage"]: s["seconds"] for s in read_json(self.report(own[name]))["stages"]})
-        base = statistics.median(seconds for seconds, _, _ in measured["curvetet"])
-        for name, command in commands.items():
+                if name.startswith("curvetet"):
+                    report = read_json(self.report(1 if name == "curvetet" else os.cpu_count()))
+                    stages[name].append({s["stage"]: s["seconds"] for s in report["stages"]})
+        for name in commands:
+            tets, ratio, angle = self.quality(name)
             seconds, memory = (statistics.median(run[i] for run in measured[name]) for i in (0, 1))
-            tets, ratio, angle = self.quality(command[command.index("-o") + 1])
-            inside = [s["interior points"] + s["improvement"] for s in stages[name]]
-            yield [name, f"{tets / 1e6:.2f}", f"{seconds:.2f}", f"{seconds / base:.2f}", f"{memory:.0f}", f"{ratio:.3f}", f"{angle:.1f}",
-                   f"{statistics.median(inside):.2f}" if inside else "-"]
+            yield {"program": name, "tets": tets, "seconds": seconds, "memory": memory, "ratio": ratio, "angle": angle,
+                   "stages": stages[name]}
+
+
+HEAD = ["| program | million tets | seconds | time per tet over curvetet's | MB | mean radius ratio | worst dihedral angle | "
+        "refinement and improvement, s |", "|---|---|---|---|---|---|---|---|"]
+
+
+def line_of(row, base):
+    inside = [stages["interior points"] + stages["improvement"] for stages in row["stages"]]
+    over = row["seconds"] / row["tets"] / (base["seconds"] / base["tets"])
+    refining = f"{statistics.median(inside):.2f}" if inside else "-"
+    return (f"| {row['program']} | {row['tets'] / 1e6:.3g} | {row['seconds']:.2f} | {over:.2f} | {row['memory']:.0f} | {row['ratio']:.3f} | "
+            f"{row['angle']:.1f} | {refining} |")
+
+
+def stage_shares(row):
+    """Median seconds of each stage; small ones together."""
+    medians = {stage: statistics.median(stages[stage] for stages in row["stages"]) for stage in row["stages"][0]}
+    shown = {stage: seconds for stage, seconds in medians.items() if seconds >= SHOWN_SHARE * sum(medians.values())}
+    return shown | {"other": sum(medians.values()) - sum(shown.values())}
+
+
+def plot(rows, folder):
+    names = list(dict.fromkeys(row["program"] for row in rows))
+    for key, title in (("seconds", "Seconds from file to file"), ("memory", "Memory, MB at most")):
+        svg_plot.lines(folder / f"benchmark_{key}.svg", title, "million tets", title,
+                       {name: [(row["tets"] / 1e6, row[key]) for row in rows if row["program"] == name] for name in names})
+    svg_plot.shares(folder / "benchmark_stages.svg", "Shares of the stages of curvetet, one thread, by million tets",
+                    {f"{row['tets'] / 1e6:.3g}": stage_shares(row) for row in rows if row["program"] == "curvetet"})
 
 
 def main():
     arguments = parse_arguments()
     arguments.out.mkdir(parents=True, exist_ok=True)
-    lines = ["| program | million tets | seconds | over curvetet's | MB | mean radius ratio | worst dihedral angle | refinement and improvement, s |",
-             "|---|---|---|---|---|---|---|---|"]
+    benchmark, rows, lines = Benchmark(arguments), [], list(HEAD)
     for size in arguments.sizes.split(","):
-        for row in Benchmark(arguments).rows(float(size)):
-            lines.append("| " + " | ".join(row) + " |")
-            print(lines[-1], flush=True)
-    if not shutil.which("gmsh"):
-        lines.append("\ngmsh was not installed.")
+        here = list(benchmark.rows(float(size)))
+        base = next(row for row in here if row["program"] == "curvetet")
+        lines += [line_of(row, base) for row in here]
+        rows += here
+        print("\n".join(lines[-len(here):]), flush=True)
+    installed = {"gmsh": shutil.which("gmsh"), "netgen": compare.PYTHON, "tetgen": shutil.which("tetgen")}
+    lines += [f"\n{name} was not installed." for name, there in installed.items() if not there]
     if arguments.page:
-        write_page(arguments.page, lines)
+        compare.write_page(arguments.page, lines)
+        plot(rows, arguments.page.parent / "pictures")
 
 
 if __name__ == "__main__":

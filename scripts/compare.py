@@ -28,17 +28,18 @@ from netgen.meshing import MeshingParameters
 geometry = LoadOCCGeometry(sys.argv[1])
 mesh = geometry.GenerateMesh(mp=MeshingParameters(maxh=float(sys.argv[2]), curvaturesafety=float(sys.argv[4]) / 6.283185307))
 mesh.Export(sys.argv[3], "Gmsh2 Format")
-# Its export calls the format 2.0 and lists the nodes of tets the other way round, which is no fault of the mesh.
-with open(sys.argv[3]) as file:
-    lines = file.read().split("\\n")
-lines[1] = "2.2 0 8"
-for i in range(lines.index("$Elements") + 2, lines.index("$EndElements")):
-    words = lines[i].split()
-    if words[1] == "4":
-        lines[i] = " ".join([*words[:-2], words[-1], words[-2]])
-with open(sys.argv[3], "w") as file:
-    file.write("\\n".join(lines))
 """
+
+
+def mend_netgen(mesh):
+    """Its export calls the format 2.0 and lists the nodes of tets the other way round, which is no fault of the mesh."""
+    lines = mesh.read_text().split("\n")
+    lines[1] = "2.2 0 8"
+    for i in range(lines.index("$Elements") + 2, lines.index("$EndElements")):
+        words = lines[i].split()
+        if words[1] == "4":
+            lines[i] = " ".join([*words[:-2], words[-1], words[-2]])
+    mesh.write_text("\n".join(lines))
 
 
 def gmsh(algorithm):
@@ -96,6 +97,8 @@ class Comparison:
         mesh.unlink(missing_ok=True)
         row["exit"], _, _, row["seconds"] = run(words, self.a.time_limit, self.a.memory_limit)
         if row["exit"] == 0 and mesh.is_file():
+            if row["program"] == "netgen":
+                mend_netgen(mesh)
             for row["parts"] in in_parts:
                 row["valid"], row["failed"], _ = self.corpus.judge(row["body"], mesh, stem, row["parts"])
                 if row["valid"] is True:

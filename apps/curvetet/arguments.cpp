@@ -452,7 +452,7 @@ CLI::App* describe_batch(CLI::App& app, BatchCommand& command) {
       ->required()
       ->type_name("DIR")
       ->check(not_empty());
-  batch->add_option("--jobs", command.jobs, "bodies at a time; 0: as many as there are cores")
+  batch->add_option("--jobs", command.jobs, "bodies at a time; 0: as many as there are cores, which they share")
       ->type_name("NUMBER")
       ->check(CLI::Range(0, 4096))
       ->capture_default_str();

@@ -167,6 +167,10 @@ class Batch {
       arguments.emplace_back("--memory-limit");
       arguments.push_back(std::to_string(command_.memory_limit));
     }
+    if (!names_threads(command_.mesh_options) && !names_threads(body.options)) {
+      arguments.emplace_back("--threads");
+      arguments.push_back(std::to_string(threads_of_a_job()));
+    }
     for (const auto* options : {&command_.mesh_options, &body.options})
       arguments.insert(arguments.end(), options->begin(), options->end());
     r.begin = Clock::now();
@@ -174,6 +178,13 @@ class Batch {
                                              std::vector<std::string>{end_with_parent_variable()});
     running_.push_back(std::move(r));
   }
+
+  static bool names_threads(const std::vector<std::string>& options) {
+    return std::any_of(options.begin(), options.end(), [](const std::string& o) { return o.starts_with("--threads"); });
+  }
+
+  /// The cores are shared out: threads that wait for cores hold each other up.
+  std::size_t threads_of_a_job() const { return std::max<std::size_t>(1, std::thread::hardware_concurrency() / jobs_); }
 
   bool has_ended(Running& r) const {
     if (!r.child->started() || r.child->poll()) return true;

@@ -105,12 +105,11 @@ class BadTets {
     top_ = std::max<std::size_t>(top_, entry.badness);
   }
 
-  /// An entry of each of `fronts` stretches of the curve, far apart in space; the next call gives those after them,
+  /// Appends an entry of each of `fronts` stretches of the curve, far apart in space; the next call those after them,
   /// whose surroundings are then in the processor's cache. False: all have been taken. prepare(entries) puts the worst
   /// classes in order, when their turn comes.
   template <class Prepare>
   bool take(std::size_t fronts, const Prepare& prepare, std::vector<Entry>& out) {
-    out.clear();
     if (column_ == stretch_ && !open_classes(fronts, prepare)) return false;
     for (std::size_t k = column_; k < open_.size(); k += stretch_) out.push_back(open_[k]);
     ++column_;
@@ -205,12 +204,13 @@ class Refinement {
     batch_.clear();
     ++batch_number_;
     in_batch_.resize(vertices_.size(), 0);
-    column_.clear();
     column_.swap(waiting_);
-    do {
+    const auto prepare = [this](std::vector<Entry>& entries) { put_in_order(entries); };
+    for (bool more = true; more && batch_.empty();) {
+      more = bad_.take(fronts, prepare, column_);
       for (const Entry& e : column_) choose(e);
-    } while (batch_.empty() && bad_.take(
-                                   fronts, [this](std::vector<Entry>& entries) { put_in_order(entries); }, column_));
+      column_.clear();
+    }
     return !batch_.empty();
   }
 

@@ -728,6 +728,20 @@ class Batch(CommandLineTest):
                 self.assertEqual(self.rows()[1]["status"], "valid")
                 self.assertEqual(self.programs(), [])
 
+    def test_jobs_share_the_cores(self):
+        self.name_bodies(BODIES / "plate.step")
+        for options, threads in ((self.LONG, b"1"), ([*self.LONG, "--threads", 2], b"2")):
+            with self.subTest(options=options):
+                batch = self.start("--restart", "--jobs", 4096, *options)
+                words = self.read(pathlib.Path(f"/proc/{self.wait_for_program()}/cmdline")).split(b"\0")
+                batch.kill()
+                batch.communicate()
+                self.assertEqual([b for a, b in zip(words, words[1:]) if a == b"--threads"], [threads])
+                for _ in range(500):
+                    if not self.programs():
+                        break
+                    time.sleep(0.01)
+
     def test_options_of_one_body(self):
         self.list.write_text("".join(f"{BODIES / 'box.step'}\t--size\tD/{n}\n" for n in (2, 6)))
         self.batch(0)
