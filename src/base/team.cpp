@@ -14,8 +14,7 @@ namespace curvetet {
 
 namespace {
 
-constexpr std::uint32_t kClosed = UINT32_MAX;
-/// Looks for a block before a helper sleeps; the first ones without giving up the core.
+/// Looks for a phase before a helper sleeps; the first ones without giving up the core.
 constexpr int kLooks = 20000, kLooksAwake = 2000;
 
 void pause_briefly() {
@@ -35,11 +34,14 @@ void wait_briefly(int looks) {
 }  // namespace
 
 Team::~Team() {
-  for (Share& share : shares_) {
-    share.unclaimed.store(kClosed, std::memory_order_release);
-    share.unclaimed.notify_all();
-  }
+  is_closed_.store(true, std::memory_order_relaxed);
+  begin_phase();
   for (std::thread& helper : helpers_) helper.join();
+}
+
+void Team::begin_phase() {
+  phase_.fetch_add(1, std::memory_order_release);
+  phase_.notify_all();
 }
 
 /// A machine that refuses a thread is short of them: those there are will do.
@@ -60,15 +62,19 @@ void Team::run_blocks(std::size_t blocks, Job job) {
   if (shares_.empty()) start();
   job_ = job;
   unfinished_.store(static_cast<std::uint32_t>(blocks), std::memory_order_relaxed);
-  for (std::size_t w = size_; w-- > 0;) {
+  for (std::size_t w = 0; w < size_; ++w) {
     const std::size_t begin = w * blocks / size_, end = (w + 1) * blocks / size_;
     shares_[w].end = static_cast<std::uint32_t>(end);
     shares_[w].unclaimed.store(static_cast<std::uint32_t>(end - begin), std::memory_order_release);
-    shares_[w].unclaimed.notify_all();
   }
-  for (std::uint32_t block; claim(0, block);) work(block, 0);
+  begin_phase();
+  work_on_all(0);
   for (int looks = 0; unfinished_.load(std::memory_order_acquire) != 0; ++looks) wait_briefly(looks);
   if (failure_) std::rethrow_exception(std::exchange(failure_, nullptr));
+}
+
+void Team::work_on_all(std::size_t worker) {
+  for (std::uint32_t block; claim(worker, block);) work(block, worker);
 }
 
 /// Takes a block of the worker's own share, or else of another one, if there is one.
@@ -76,7 +82,7 @@ bool Team::claim(std::size_t worker, std::uint32_t& block) {
   for (std::size_t k = 0; k < size_; ++k) {
     Share& share = shares_[(worker + k) % size_];
     std::uint32_t left = share.unclaimed.load(std::memory_order_relaxed);
-    while (left != 0 && left != kClosed) {
+    while (left != 0) {
       if (share.unclaimed.compare_exchange_weak(left, left - 1, std::memory_order_acquire)) {
         block = share.end - left;
         return true;
@@ -97,18 +103,12 @@ void Team::work(std::uint32_t block, std::size_t worker) {
 }
 
 void Team::help(std::size_t worker) {
-  std::atomic<std::uint32_t>& own = shares_[worker].unclaimed;
-  int looks = 0;
-  while (own.load(std::memory_order_relaxed) != kClosed) {
-    if (std::uint32_t block; claim(worker, block)) {
-      work(block, worker);
-      looks = 0;
-    } else if (++looks < kLooks) {
-      wait_briefly(looks);
-    } else {
-      own.wait(0, std::memory_order_relaxed);
-      looks = 0;
-    }
+  std::uint32_t seen = 0;
+  while (!is_closed_.load(std::memory_order_relaxed)) {
+    work_on_all(worker);
+    for (int looks = 0; phase_.load(std::memory_order_acquire) == seen && looks < kLooks; ++looks) wait_briefly(looks);
+    phase_.wait(seen, std::memory_order_acquire);
+    seen = phase_.load(std::memory_order_acquire);
   }
 }
 

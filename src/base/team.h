@@ -24,7 +24,8 @@ namespace curvetet {
 /// Phases of more than a millisecond have parallel_for(), whose threads are shared by all of the program.
 class Team {
  public:
-  explicit Team(const Context& context) : size_(worker_count(context)) {}
+  /// At most so many threads: more would only look on where phases have few blocks.
+  explicit Team(const Context& context, std::size_t most = 16) : size_(std::min(worker_count(context), most)) {}
   ~Team();
   Team(const Team&) = delete;
   Team& operator=(const Team&) = delete;
@@ -60,6 +61,8 @@ class Team {
   void run_blocks(std::size_t blocks, Job job);
   void start();
   void help(std::size_t worker);
+  void begin_phase();
+  void work_on_all(std::size_t worker);
   bool claim(std::size_t worker, std::uint32_t& block);
   void work(std::uint32_t block, std::size_t worker);
 
@@ -67,9 +70,11 @@ class Team {
   std::vector<std::thread> helpers_;
   std::vector<Share> shares_;  ///< empty until the start
   Job job_;                    ///< stays what it is from the claim of one of its blocks until that is finished
-  alignas(64) std::atomic<std::uint32_t> unfinished_ = 0;
   std::mutex failure_lock_;
   std::exception_ptr failure_;
+  std::atomic<bool> is_closed_ = false;
+  alignas(64) std::atomic<std::uint32_t> unfinished_ = 0;  ///< blocks
+  alignas(64) std::atomic<std::uint32_t> phase_ = 0;       ///< what helpers look at while they wait
 };
 
 }  // namespace curvetet

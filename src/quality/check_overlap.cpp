@@ -118,7 +118,7 @@ void check_self_intersection(const Mesh& mesh, const Topology& topology, const B
     });
   }
   std::vector<std::vector<std::uint32_t>> met(boundary.size());
-  in_blocks(context, boundary.size(), [&](std::size_t begin, std::size_t end) {
+  in_blocks(context, boundary.size(), kBlock, [&](std::size_t begin, std::size_t end) {
     std::vector<std::uint32_t> near;
     for (std::size_t i = begin; i < end && !context.should_stop(); ++i) {
       near.clear();

@@ -82,11 +82,8 @@ struct Topology {
 /// The uses of the facet with these ascending vertices.
 std::span<const FacetUse> uses_of(const Topology& topology, const std::array<std::uint32_t, 3>& ascending);
 
-/// Items of a block.
+/// Items that one thread looks at after each other.
 inline constexpr std::size_t kBlock = 8192;
-
-/// body(begin, end) over fixed blocks of [0, n), in parallel.
-void in_blocks(const Context& context, std::size_t n, const std::function<void(std::size_t, std::size_t)>& body);
 
 /// Arrays of matching lengths, indices in range, finite coordinates. False: nothing else can be checked.
 bool check_arrays(const Mesh& mesh, Findings& findings);

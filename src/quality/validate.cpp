@@ -75,10 +75,6 @@ bool Findings::any_error() const {
                      [](const Finding& f) { return f.severity == Severity::error; });
 }
 
-void in_blocks(const Context& context, std::size_t n, const std::function<void(std::size_t, std::size_t)>& body) {
-  curvetet::in_blocks(context, n, kBlock, body);
-}
-
 std::vector<double> solid_volumes(const Mesh& mesh) {
   std::vector<double> volumes(mesh.solids.size(), 0.0);
   for (std::size_t t = 0; t < mesh.tets.size(); ++t) {
@@ -90,7 +86,7 @@ std::vector<double> solid_volumes(const Mesh& mesh) {
 
 QualitySummary summarize_quality(const Mesh& mesh, Context& context) {
   std::vector<BlockSummary> blocks((mesh.tets.size() + kBlock - 1) / kBlock);
-  in_blocks(context, mesh.tets.size(), [&](std::size_t begin, std::size_t end) {
+  in_blocks(context, mesh.tets.size(), kBlock, [&](std::size_t begin, std::size_t end) {
     for (std::size_t t = begin; t < end; ++t) {
       const std::array<Vec3, 4> p = corners(mesh, t);
       count_tet(blocks[begin / kBlock], t, radius_ratio(p[0], p[1], p[2], p[3]),
