@@ -15,11 +15,11 @@
 namespace curvetet {
 
 /// One thread, that of the owner, works through the phases in order; in each the others take blocks of it, too. To
-/// start a phase takes less than a microsecond, since they wait for it awake; only if none comes for a while they sleep.
-/// Each has a share of the blocks, the same part of every phase, so that what is near in the order of the items stays
-/// in the cache of one core; whoever is done with its own takes of others'. They are started with the first phase that
-/// has more than one block. Where the machine gives them no time, the owner does all of a phase alone: it waits for
-/// those blocks only that others have begun.
+/// start a phase takes less than a microsecond, since they wait for it awake; only if none comes for a while they
+/// sleep. Each has a share of the blocks, the same part of every phase, so that what is near in the order of the items
+/// stays in the cache of one core; whoever is done with its own takes of others'. They are started with the first phase
+/// that has more than one block. Where the machine gives them no time, the owner does all of a phase alone: it waits
+/// for those blocks only that others have begun.
 ///
 /// Phases of more than a millisecond have parallel_for(), whose threads are shared by all of the program.
 class Team {
