@@ -29,6 +29,7 @@
 #include <TopoDS.hxx>
 #include <cmath>
 #include <cstdio>
+#include <cstdlib>
 #include <filesystem>
 #include <gp_Ax2.hxx>
 #include <gp_Circ.hxx>
@@ -40,8 +41,14 @@ namespace {
 
 std::filesystem::path folder;
 
+void check(bool is_written, const std::string& name) {
+  if (is_written) return;
+  std::fprintf(stderr, "%s cannot be written\n", name.c_str());
+  std::exit(1);
+}
+
 void save(const std::string& name, const TopoDS_Shape& shape) {
-  BRepTools::Write(shape, (folder / (name + ".brep")).c_str());
+  check(BRepTools::Write(shape, (folder / (name + ".brep")).c_str()), name + ".brep");
   std::printf("%s\n", name.c_str());
 }
 
@@ -177,7 +184,7 @@ void bulk() {
   save("bulk", body);
   STEPControl_Writer writer;
   writer.Transfer(body, STEPControl_AsIs);
-  writer.Write((folder / "bulk.step").c_str());
+  check(writer.Write((folder / "bulk.step").c_str()) == IFSelect_RetDone, "bulk.step");
 }
 
 }  // namespace

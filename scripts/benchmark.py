@@ -20,11 +20,13 @@ import statistics
 import subprocess
 import sys
 import time
+import typing
 
 import compare
 import svg_plot
 from corpus import gmsh_command, read_json, run
 
+OWN = compare.OWN
 CLOSE = 0.02
 ROUNDS = 8  # of the search for the size
 MOST_SECONDS = 60  # that a program may have taken before it is run once more
@@ -56,6 +58,16 @@ def measure(command):
     return time.monotonic() - start, usage.ru_maxrss / 1000, usage.ru_utime + usage.ru_stime
 
 
+def step_of(body):
+    """netgen reads nothing else."""
+    return body.with_suffix(".step")
+
+
+def installed(body):
+    """Which peers can be measured."""
+    return {"gmsh": shutil.which("gmsh"), "netgen": compare.PYTHON and step_of(body).is_file(), "tetgen": shutil.which("tetgen")}
+
+
 def apart(work, *arguments):
     """In a process of its own: what this one has at most would be counted for the programs that it starts."""
     process = multiprocessing.Process(target=work, args=arguments)
@@ -83,10 +95,10 @@ def write_smesh(medit, smesh, hole):
     smesh.write_text("\n".join([*out, "0"]) + "\n")
 
 
-def write_medit(stem, medit):
+def write_medit(medit):
     """tetgen's files as one that curvetet reads: its own Medit files have a wrong number of triangles."""
     def rows(suffix):
-        lines = [line.split() for line in stem.with_suffix(suffix).read_text().split("\n") if line and not line.startswith("#")]
+        lines = [line.split() for line in medit.with_suffix(suffix).read_text().split("\n") if line and not line.startswith("#")]
         return lines[1:1 + int(lines[0][0])]
 
     points, tets = rows(".1.node"), rows(".1.ele")
@@ -95,84 +107,89 @@ def write_medit(stem, medit):
                                 *(" ".join(t[1:5]) + " 1" for t in tets), "End"]) + "\n")
 
 
+class Program(typing.NamedTuple):
+    command: list
+    mesh: pathlib.Path  # that it writes, or that is made of what it writes
+    mend: typing.Callable = None  # of the mesh, so that curvetet reads it
+    report: pathlib.Path = None
+
+
 class Benchmark:
     def __init__(self, arguments):
         self.a = arguments
         self.slow = set()  # programs that have taken too long at a larger size
 
     def own(self, size, threads):
-        return [self.a.curvetet, "mesh", self.a.body, "-o", self.a.out / f"own{threads}.msh", "-q", "--threads", threads, "--size",
-                repr(size), "--curvature", 0, "--report", self.report(threads)]
-
-    def report(self, threads):
-        return self.a.out / f"own{threads}.json"
+        mesh, report = (self.a.out / f"own{threads}{ending}" for ending in (".msh", ".json"))
+        return Program([self.a.curvetet, "mesh", self.a.body, "-o", mesh, "-q", "--threads", threads, "--size", repr(size),
+                        "--curvature", 0, "--report", report], mesh, report=report)
 
     def gmsh(self, size, algorithm):
-        return [*gmsh_command(self.a.body, repr(size), self.a.out / f"gmsh{algorithm}.msh", 0, algorithm), "-bin"]
+        mesh = self.a.out / f"gmsh{algorithm}.msh"
+        return Program([*gmsh_command(self.a.body, repr(size), mesh, 0, algorithm), "-bin"], mesh)
+
+    def netgen(self, size):
+        mesh = self.a.out / "netgen.msh"
+        return Program([compare.PYTHON, "-c", compare.NETGEN, step_of(self.a.body), repr(size), mesh, 0], mesh, compare.mend_netgen)
 
     def tetgen(self, size):
-        """The command, once its input is there."""
+        """Once its input is there."""
         medit, smesh = self.a.out / "surface.mesh", self.a.out / "tetgen.smesh"
         measure([self.a.curvetet, "mesh", self.a.body, "-o", medit, "-q", "--size", repr(size), "--curvature", 0, "--no-refine",
                  "--no-improve"])
         apart(write_smesh, medit, smesh, self.a.hole)
-        return ["tetgen", f"-pYq1.2Qa{VOLUME_OVER_CUBE * size**3:.12f}", smesh]
+        return Program(["tetgen", f"-pYq1.2Qa{VOLUME_OVER_CUBE * size**3:.12f}", smesh], self.a.out / "tetgen.mesh", write_medit)
 
-    def quality(self, name):
+    def quality(self, program):
         """Of the mesh that the program has written: tets, mean radius ratio, worst dihedral angle."""
-        mesh = self.a.out / {"gmsh, HXT": "gmsh10.msh", "gmsh, Delaunay": "gmsh1.msh", "netgen": "netgen.msh",
-                             "tetgen, volume only": "tetgen.mesh", "curvetet": "own1.msh"}.get(name, f"own{os.cpu_count()}.msh")
-        if name == "netgen":
-            apart(compare.mend_netgen, mesh)
-        elif name.startswith("tetgen"):
-            apart(write_medit, self.a.out / "tetgen", mesh)
-        _, out, _, _ = run([self.a.curvetet, "check", "--json", mesh], None, 0)
+        if program.mend:
+            apart(program.mend, program.mesh)
+        _, out, _, _ = run([self.a.curvetet, "check", "--json", program.mesh], None, 0)
         found = read_json(out)
         if not found or not found["counts"]["tets"]:
-            sys.exit(f"{mesh} has no tets")
+            sys.exit(f"{program.mesh} has no tets")
         return found["counts"]["tets"], found["quality"]["mean_radius_ratio"], found["quality"]["worst_dihedral"]
 
     def matching_size(self, size, wanted):
         """At which curvetet makes `wanted` tets, within two hundredths."""
         for _ in range(ROUNDS):
-            measure(self.own(size, 1))
-            tets = read_json(self.report(1))["counts"]["tets"]
+            program = self.own(size, 1)
+            measure(program.command)
+            tets = read_json(program.report)["counts"]["tets"]
             if abs(tets / wanted - 1) <= CLOSE:
                 return size
             size *= (tets / wanted) ** (1 / 3)
         sys.exit(f"no size found that makes {wanted} tets")
 
-    def commands(self, size):
-        """By name, and curvetet's size."""
-        commands, own_size, step = {}, size, self.a.body.with_suffix(".step")
-        if shutil.which("gmsh"):
-            commands["gmsh, HXT"] = self.gmsh(size, 10)
-            measure(commands["gmsh, HXT"])
-            own_size = self.matching_size(size, self.quality("gmsh, HXT")[0])
-            commands["gmsh, Delaunay"] = self.gmsh(size, 1)
-        if compare.PYTHON and step.is_file():
-            commands["netgen"] = [compare.PYTHON, "-c", compare.NETGEN, step, repr(size), self.a.out / "netgen.msh", 0]
-        if shutil.which("tetgen"):
-            commands["tetgen, volume only"] = self.tetgen(own_size)
-        commands["curvetet"] = self.own(own_size, 1)
-        commands[f"curvetet, {os.cpu_count()} threads"] = self.own(own_size, os.cpu_count())
-        return {name: command for name, command in commands.items() if name not in self.slow}
+    def programs(self, size):
+        """By name."""
+        programs, own_size, there = {}, size, installed(self.a.body)
+        if there["gmsh"]:
+            programs = {"gmsh, HXT": self.gmsh(size, 10), "gmsh, Delaunay": self.gmsh(size, 1)}
+            measure(programs["gmsh, HXT"].command)
+            own_size = self.matching_size(size, self.quality(programs["gmsh, HXT"])[0])
+        if there["netgen"]:
+            programs["netgen"] = self.netgen(size)
+        if there["tetgen"]:
+            programs["tetgen, volume only"] = self.tetgen(own_size)
+        programs[OWN] = self.own(own_size, 1)
+        programs[f"{OWN}, {os.cpu_count()} threads"] = self.own(own_size, os.cpu_count())
+        return {name: program for name, program in programs.items() if name not in self.slow}
 
     def rows(self, size):
         """A dict for each program."""
-        commands = self.commands(size)
-        measured, stages = {name: [] for name in commands}, {name: [] for name in commands}
+        programs = self.programs(size)
+        measured, stages = {name: [] for name in programs}, {name: [] for name in programs}
         for _ in range(self.a.runs):
-            for name, command in commands.items():
+            for name, program in programs.items():
                 if sum(seconds for seconds, _, _ in measured[name]) > MOST_SECONDS:
                     self.slow.add(name)
                     continue
-                measured[name].append(measure(command))
-                if name.startswith("curvetet"):
-                    report = read_json(self.report(1 if name == "curvetet" else os.cpu_count()))
-                    stages[name].append({s["stage"]: s["seconds"] for s in report["stages"]})
-        for name in commands:
-            tets, ratio, angle = self.quality(name)
+                measured[name].append(measure(program.command))
+                if program.report:
+                    stages[name].append({s["stage"]: s["seconds"] for s in read_json(program.report)["stages"]})
+        for name, program in programs.items():
+            tets, ratio, angle = self.quality(program)
             seconds, memory = (statistics.median(run[i] for run in measured[name]) for i in (0, 1))
             yield {"program": name, "tets": tets, "seconds": seconds, "memory": memory, "ratio": ratio, "angle": angle,
                    "stages": stages[name]}
@@ -203,7 +220,7 @@ def plot(rows, folder):
         svg_plot.lines(folder / f"benchmark_{key}.svg", title, "million tets", title,
                        {name: [(row["tets"] / 1e6, row[key]) for row in rows if row["program"] == name] for name in names})
     svg_plot.shares(folder / "benchmark_stages.svg", "Shares of the stages of curvetet, one thread, by million tets",
-                    {f"{row['tets'] / 1e6:.3g}": stage_shares(row) for row in rows if row["program"] == "curvetet"})
+                    {f"{row['tets'] / 1e6:.3g}": stage_shares(row) for row in rows if row["program"] == OWN})
 
 
 def main():
@@ -212,12 +229,11 @@ def main():
     benchmark, rows, lines = Benchmark(arguments), [], list(HEAD)
     for size in arguments.sizes.split(","):
         here = list(benchmark.rows(float(size)))
-        base = next(row for row in here if row["program"] == "curvetet")
+        base = next(row for row in here if row["program"] == OWN)
         lines += [line_of(row, base) for row in here]
         rows += here
         print("\n".join(lines[-len(here):]), flush=True)
-    installed = {"gmsh": shutil.which("gmsh"), "netgen": compare.PYTHON, "tetgen": shutil.which("tetgen")}
-    lines += [f"\n{name} was not installed." for name, there in installed.items() if not there]
+    lines += [f"\n{name} was not there." for name, there in installed(arguments.body).items() if not there]
     if arguments.page:
         compare.write_page(arguments.page, lines)
         plot(rows, arguments.page.parent / "pictures")

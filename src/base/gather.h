@@ -8,6 +8,9 @@
 
 namespace curvetet {
 
+/// A block where an item takes well below a microsecond: far more than handing out a block costs.
+inline constexpr std::size_t kLargeBlock = 8192;
+
 /// body(begin, end) over the blocks of [0, n).
 template <class Body>
 void in_blocks(const Context& context, std::size_t n, std::size_t block, const Body& body) {
@@ -18,9 +21,8 @@ void in_blocks(const Context& context, std::size_t n, std::size_t block, const B
 template <class T, class Body>
 std::vector<T> gather(const Context& context, std::size_t n, std::size_t block, const Body& body) {
   std::vector<std::vector<T>> parts((n + block - 1) / block);
-  parallel_for(context, parts.size(), [&](std::size_t part) {
-    const std::size_t end = std::min(n, (part + 1) * block);
-    for (std::size_t i = part * block; i < end; ++i) body(i, parts[part]);
+  in_blocks(context, n, block, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) body(i, parts[begin / block]);
   });
   std::vector<T> all;
   for (const std::vector<T>& part : parts) all.insert(all.end(), part.begin(), part.end());

@@ -24,8 +24,10 @@ namespace curvetet {
 /// Phases of more than a millisecond have parallel_for(), whose threads are shared by all of the program.
 class Team {
  public:
-  /// At most so many threads: more would only look on where phases have few blocks.
-  explicit Team(const Context& context, std::size_t most = 16) : size_(std::min(worker_count(context), most)) {}
+  /// More would only look on: phases have few blocks.
+  static constexpr std::size_t kMostThreads = 16;
+
+  explicit Team(const Context& context) : size_(std::min(worker_count(context), kMostThreads)) {}
   ~Team();
   Team(const Team&) = delete;
   Team& operator=(const Team&) = delete;

@@ -86,14 +86,13 @@ void TetComplex::start_flood() {
 
 void TetComplex::reorder(const std::vector<TetId>& order, const Context& context) {
   CURVETET_CHECK(order.size() == alive());
-  constexpr std::size_t kBlock = 8192;
   std::vector<TetId> number(tets_.size());
   GrowingArray<Tet> sorted;
   sorted.resize(order.size());
-  in_blocks(context, order.size(), kBlock, [&](std::size_t begin, std::size_t end) {
+  in_blocks(context, order.size(), kLargeBlock, [&](std::size_t begin, std::size_t end) {
     for (std::size_t k = begin; k < end; ++k) number[order[k].value()] = TetId(k);
   });
-  in_blocks(context, order.size(), kBlock, [&](std::size_t begin, std::size_t end) {
+  in_blocks(context, order.size(), kLargeBlock, [&](std::size_t begin, std::size_t end) {
     for (std::size_t k = begin; k < end; ++k) {
       sorted[k] = tets_[order[k].value()];
       for (TetId& n : sorted[k].neighbours) n = number[n.value()];

@@ -118,7 +118,7 @@ void check_self_intersection(const Mesh& mesh, const Topology& topology, const B
     });
   }
   std::vector<std::vector<std::uint32_t>> met(boundary.size());
-  in_blocks(context, boundary.size(), kBlock, [&](std::size_t begin, std::size_t end) {
+  in_blocks(context, boundary.size(), kLargeBlock, [&](std::size_t begin, std::size_t end) {
     std::vector<std::uint32_t> near;
     for (std::size_t i = begin; i < end && !context.should_stop(); ++i) {
       near.clear();
@@ -155,7 +155,7 @@ void check_overlap(const Mesh& mesh, const Topology& topology, const BoxTree& bo
   const PointTree tree(std::move(used));
   using Overlap = std::pair<std::size_t, std::uint32_t>;  // a tet and a vertex in it
   const auto found =
-      gather<Overlap>(context, mesh.tets.size(), kBlock, [&](std::size_t t, std::vector<Overlap>& inside) {
+      gather<Overlap>(context, mesh.tets.size(), kLargeBlock, [&](std::size_t t, std::vector<Overlap>& inside) {
         if (topology.tet_sign[t] == 0 || context.should_stop()) return;
         const auto& tet = mesh.tets[t];
         tree.within(box_around(mesh, tet), [&](const PointTree::Item& item) {

@@ -62,7 +62,7 @@ bool repeats_vertex(const std::array<std::uint32_t, 4>& t) {
 
 void sign_tets(const Mesh& mesh, Topology& topology, Context& context, Findings& findings) {
   topology.tet_sign.resize(mesh.tets.size());
-  in_blocks(context, mesh.tets.size(), kBlock, [&](std::size_t begin, std::size_t end) {
+  in_blocks(context, mesh.tets.size(), kLargeBlock, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       const auto& t = mesh.tets[i];
       topology.tet_sign[i] = static_cast<std::int8_t>(exact::orientation(
@@ -97,7 +97,7 @@ void file_facets(const Mesh& mesh, Topology& topology, Context& context) {
       topology.facet_uses[next[facet[0]]++] = {facet[1], facet[2], static_cast<std::uint32_t>(t), !odd};
     }
   }
-  in_blocks(context, mesh.points.size(), kBlock, [&](std::size_t begin, std::size_t end) {
+  in_blocks(context, mesh.points.size(), kLargeBlock, [&](std::size_t begin, std::size_t end) {
     for (std::size_t v = begin; v < end; ++v) {
       std::sort(topology.facet_uses.begin() + topology.facet_begin[v],
                 topology.facet_uses.begin() + topology.facet_begin[v + 1], [](const FacetUse& a, const FacetUse& b) {

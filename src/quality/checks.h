@@ -82,9 +82,6 @@ struct Topology {
 /// The uses of the facet with these ascending vertices.
 std::span<const FacetUse> uses_of(const Topology& topology, const std::array<std::uint32_t, 3>& ascending);
 
-/// Items that one thread looks at after each other.
-inline constexpr std::size_t kBlock = 8192;
-
 /// Arrays of matching lengths, indices in range, finite coordinates. False: nothing else can be checked.
 bool check_arrays(const Mesh& mesh, Findings& findings);
 void check_nodes(const Mesh& mesh, const Topology& topology, Findings& findings);

@@ -85,11 +85,11 @@ std::vector<double> solid_volumes(const Mesh& mesh) {
 }
 
 QualitySummary summarize_quality(const Mesh& mesh, Context& context) {
-  std::vector<BlockSummary> blocks((mesh.tets.size() + kBlock - 1) / kBlock);
-  in_blocks(context, mesh.tets.size(), kBlock, [&](std::size_t begin, std::size_t end) {
+  std::vector<BlockSummary> blocks((mesh.tets.size() + kLargeBlock - 1) / kLargeBlock);
+  in_blocks(context, mesh.tets.size(), kLargeBlock, [&](std::size_t begin, std::size_t end) {
     for (std::size_t t = begin; t < end; ++t) {
       const std::array<Vec3, 4> p = corners(mesh, t);
-      count_tet(blocks[begin / kBlock], t, radius_ratio(p[0], p[1], p[2], p[3]),
+      count_tet(blocks[begin / kLargeBlock], t, radius_ratio(p[0], p[1], p[2], p[3]),
                 smallest_dihedral(p[0], p[1], p[2], p[3]));
     }
   });

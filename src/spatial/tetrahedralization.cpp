@@ -14,8 +14,6 @@ namespace curvetet {
 
 namespace {
 
-constexpr std::size_t kBlock = 8192;
-
 std::uint64_t segment_key(VertexId a, VertexId b) {
   return static_cast<std::uint64_t>(std::min(a, b).value()) << 32 | std::max(a, b).value();
 }
@@ -104,7 +102,7 @@ void Tetrahedralization::link_vertices() {
 void Tetrahedralization::sort_in_space(VertexStore& vertices, VertexId first, const Context& context) {
   CURVETET_CHECK(&vertices == vertices_);
   std::vector<std::pair<std::uint64_t, VertexId>> along(vertices.size());
-  in_blocks(context, along.size(), kBlock, [&](std::size_t begin, std::size_t end) {
+  in_blocks(context, along.size(), kLargeBlock, [&](std::size_t begin, std::size_t end) {
     for (std::size_t v = begin; v < end; ++v) along[v] = {hilbert_index(vertices.position(VertexId(v))), VertexId(v)};
   });
   parallel_sort(context, along, std::less<>());
@@ -127,11 +125,11 @@ void Tetrahedralization::sort_in_space(VertexStore& vertices, VertexId first, co
 /// By the vertex of each that is first along the curve.
 void Tetrahedralization::sort_tets(const IndexedVector<VertexId, VertexId>& number,
                                    const IndexedVector<VertexId, std::uint32_t>& rank, const Context& context) {
-  std::vector<std::uint32_t> place(complex_.slots());
-  in_blocks(context, place.size(), kBlock, [&](std::size_t begin, std::size_t end) {
+  constexpr std::uint32_t kNowhere = UINT32_MAX;  // of free slots
+  std::vector<std::uint32_t> place(complex_.slots(), kNowhere);
+  in_blocks(context, place.size(), kLargeBlock, [&](std::size_t begin, std::size_t end) {
     for (std::size_t t = begin; t < end; ++t) {
       if (!complex_.is_alive(TetId(t))) continue;
-      place[t] = static_cast<std::uint32_t>(rank.size());
       for (VertexId& v : complex_.tets()[t].vertices) {
         if (v == kInfinite) continue;
         v = number[v];
@@ -141,11 +139,11 @@ void Tetrahedralization::sort_tets(const IndexedVector<VertexId, VertexId>& numb
   });
   std::vector<std::size_t> next(rank.size() + 1, 0);
   for (std::size_t t = 0; t < place.size(); ++t)
-    if (complex_.is_alive(TetId(t))) ++next[place[t] + 1];
+    if (place[t] != kNowhere) ++next[place[t] + 1];
   std::partial_sum(next.begin(), next.end(), next.begin());
   std::vector<TetId> order(complex_.alive());
   for (std::size_t t = 0; t < place.size(); ++t)
-    if (complex_.is_alive(TetId(t))) order[next[place[t]]++] = TetId(t);
+    if (place[t] != kNowhere) order[next[place[t]]++] = TetId(t);
   complex_.reorder(order, context);
   link_vertices();
   star_.clear();

@@ -49,8 +49,6 @@ constexpr std::size_t kSlotsPerStar = 200;
 /// facets are long, bad tets are the body's fault and every attempt fails.
 constexpr std::size_t kFailedInsertions = 100;
 
-/// Tets of a list that one thread looks at.
-constexpr std::size_t kBlock = 8192;
 /// Tets or vertices that are looked at before any of them is changed, and how many of these by one thread at a time.
 constexpr std::size_t kBatch = 1024, kGrain = 16;
 
@@ -114,11 +112,11 @@ class Improvement {
   double worst_degrees() const {
     const bool all = below_.empty();
     const std::size_t n = all ? complex_.slots() : below_.size();
-    std::vector<double> least((n + kBlock - 1) / kBlock, 1);
-    in_blocks(context_, n, kBlock, [&](std::size_t begin, std::size_t end) {
+    std::vector<double> least((n + kLargeBlock - 1) / kLargeBlock, 1);
+    in_blocks(context_, n, kLargeBlock, [&](std::size_t begin, std::size_t end) {
       for (std::size_t k = begin; k < end; ++k) {
         const TetId t = all ? TetId(k) : below_[k];
-        if (is_inside(t)) least[begin / kBlock] = std::min(least[begin / kBlock], quality(t));
+        if (is_inside(t)) least[begin / kLargeBlock] = std::min(least[begin / kLargeBlock], quality(t));
       }
     });
     const double worst = least.empty() ? 1 : *std::min_element(least.begin(), least.end());
@@ -157,14 +155,14 @@ class Improvement {
   /// The tets inside that are asked for, ascending.
   template <class Asked>
   std::vector<TetId> all_inside(const Asked& asked) const {
-    return gather<TetId>(context_, complex_.slots(), kBlock, [&](std::size_t k, std::vector<TetId>& out) {
+    return gather<TetId>(context_, complex_.slots(), kLargeBlock, [&](std::size_t k, std::vector<TetId>& out) {
       if (is_inside(TetId(k)) && asked(TetId(k))) out.push_back(TetId(k));
     });
   }
 
   /// Those of a list that are there and below the goal, ascending, each once.
   void tidy(std::vector<TetId>& tets) const {
-    tets = gather<TetId>(context_, tets.size(), kBlock, [&](std::size_t k, std::vector<TetId>& out) {
+    tets = gather<TetId>(context_, tets.size(), kLargeBlock, [&](std::size_t k, std::vector<TetId>& out) {
       if (is_inside(tets[k]) && quality(tets[k]) < goal_) out.push_back(tets[k]);
     });
     parallel_sort(context_, tets, std::less<>());

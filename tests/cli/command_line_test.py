@@ -703,17 +703,20 @@ class Batch(CommandLineTest):
         return [int(path.parent.name) for path, line in lines.items()
                 if str(self.out).encode() in line and b"mesh" in line.split(b"\0")]
 
+    def wait_for_no_program(self):
+        for _ in range(500):
+            if not self.programs():
+                return
+            time.sleep(0.01)
+        self.fail("a body is still meshed")
+
     def test_bodies_end_with_a_batch_that_is_killed(self):
         self.name_bodies(BODIES / "plate.step")
         first = self.start(*self.LONG)
         self.wait_for_program()
         first.kill()
         first.communicate()
-        for _ in range(500):
-            if not self.programs():
-                break
-            time.sleep(0.01)
-        self.assertEqual(self.programs(), [])
+        self.wait_for_no_program()
 
     def test_a_body_that_crashes_or_hangs_is_its_own_fault_alone(self):
         for number, cause in ((signal.SIGSEGV, "killed by signal 11"), (signal.SIGSTOP, "did not end in time")):
@@ -730,17 +733,15 @@ class Batch(CommandLineTest):
 
     def test_jobs_share_the_cores(self):
         self.name_bodies(BODIES / "plate.step")
-        for options, threads in ((self.LONG, b"1"), ([*self.LONG, "--threads", 2], b"2")):
-            with self.subTest(options=options):
-                batch = self.start("--restart", "--jobs", 4096, *options)
+        cores = len(os.sched_getaffinity(0))
+        for jobs, options, threads in ((1, [], cores), (cores, [], 1), (4096, [], 1), (4096, ["--threads", 2], 2)):
+            with self.subTest(jobs=jobs, options=options):
+                batch = self.start("--restart", "--jobs", jobs, *self.LONG, *options)
                 words = self.read(pathlib.Path(f"/proc/{self.wait_for_program()}/cmdline")).split(b"\0")
                 batch.kill()
                 batch.communicate()
-                self.assertEqual([b for a, b in zip(words, words[1:]) if a == b"--threads"], [threads])
-                for _ in range(500):
-                    if not self.programs():
-                        break
-                    time.sleep(0.01)
+                self.assertEqual([b for a, b in zip(words, words[1:]) if a == b"--threads"], [str(threads).encode()])
+                self.wait_for_no_program()
 
     def test_options_of_one_body(self):
         self.list.write_text("".join(f"{BODIES / 'box.step'}\t--size\tD/{n}\n" for n in (2, 6)))
