@@ -41,6 +41,9 @@ double alignment(const Corner& a, const Corner& b, const Corner& c, const ChartS
 /// The triangle is far from parallel to the surface at a corner, and to the surface's mean normal.
 bool folded(const Corner& a, const Corner& b, const Corner& c, const ChartSurface& on);
 
+/// Cosine of the angle to the surface's normal, 84 degrees, from which a facet counts as folded.
+inline constexpr double kFolded = 0.1;
+
 /// Length of the surface's curve over the chart segment ab, estimated from below by the derivatives at its ends.
 double arc_estimate(const Corner& a, const Corner& b);
 /// The derivatives collapse at a corner.

@@ -17,6 +17,8 @@
 #include <optional>
 #include <set>
 
+#include "boundary/criteria.h"
+
 namespace curvetet {
 
 namespace {

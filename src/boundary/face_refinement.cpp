@@ -78,8 +78,8 @@ class FaceRefiner {
     };
   }
 
-  std::vector<AddedVertex> run(bool smooth, const Context& context) {
-    if (wraps()) {
+  std::vector<AddedVertex> run(bool on_surface_first, bool smooth, const Context& context) {
+    if (on_surface_first) {
       order_ = FlipOrder::on_surface;
       enqueue(alive());
       empty_queue(context);
@@ -100,6 +100,31 @@ class FaceRefiner {
     return std::move(added_);
   }
 
+  /// Whether some edge wraps around the surface, so that its ends are closer in space than on it. A pole has its own
+  /// ways.
+  bool wraps() const {
+    if (std::any_of(corners_.begin(), corners_.end(), at_pole)) return false;
+    for (const TriangleId id : alive()) {
+      const FaceTriangle& t = mesh_.triangle(id);
+      for (std::size_t i = 0; i < 3; ++i) {
+        const Corner &a = corner(t.node[(i + 1) % 3]), &b = corner(t.node[(i + 2) % 3]);
+        if (t.use[i] == -1 && arc_estimate(a, b) > kWraps * distance(a.position, b.position)) return true;
+      }
+    }
+    return false;
+  }
+
+  /// Triangles that stand on the surface or lie on it upside down.
+  std::size_t count_folds() const {
+    std::size_t folds = 0;
+    for (const TriangleId id : alive()) {
+      const FaceTriangle& t = mesh_.triangle(id);
+      const Corner &a = corner(t.node[0]), &b = corner(t.node[1]), &c = corner(t.node[2]);
+      if (!degenerate(a, b, c) && alignment(a, b, c, {surface_, mesh_.chart}) < kFolded) ++folds;
+    }
+    return folds;
+  }
+
  private:
   /// The median length of the segments on the face's boundary: on a thin wire far below the size.
   void measure_segments() {
@@ -116,23 +141,6 @@ class FaceRefiner {
     const auto middle = lengths.begin() + static_cast<std::ptrdiff_t>(lengths.size() / 2);
     std::nth_element(lengths.begin(), middle, lengths.end());
     usual_segment_ = *middle;
-  }
-
-  /// Whether some edge wraps around the surface, so that its ends are closer in space than on it. A pole has its own
-  /// ways; and where the first fundamental form varies at will, its mean over large triangles misleads.
-  bool wraps() const {
-    const std::array kinds{SurfaceKind::cylinder, SurfaceKind::cone, SurfaceKind::torus, SurfaceKind::revolution,
-                           SurfaceKind::extrusion};
-    if (std::find(kinds.begin(), kinds.end(), surface_.kind()) == kinds.end()) return false;
-    if (std::any_of(corners_.begin(), corners_.end(), at_pole)) return false;
-    for (const TriangleId id : alive()) {
-      const FaceTriangle& t = mesh_.triangle(id);
-      for (std::size_t i = 0; i < 3; ++i) {
-        const Corner &a = corner(t.node[(i + 1) % 3]), &b = corner(t.node[(i + 2) % 3]);
-        if (t.use[i] == -1 && arc_estimate(a, b) > kWraps * distance(a.position, b.position)) return true;
-      }
-    }
-    return false;
   }
 
   void move_nodes(const Context& context) {
@@ -454,11 +462,31 @@ class FaceRefiner {
   std::vector<TriangleId> changed_, cavity_;
 };
 
+/// Surfaces whose first fundamental form varies slowly, so that its mean over a large triangle means something. On the
+/// others, triangles judged on the surface are the second choice.
+bool has_even_form(SurfaceKind kind) {
+  constexpr std::array kinds{SurfaceKind::cylinder, SurfaceKind::cone, SurfaceKind::torus, SurfaceKind::revolution,
+                             SurfaceKind::extrusion};
+  return std::find(kinds.begin(), kinds.end(), kind) != kinds.end();
+}
+
 }  // namespace
 
 std::vector<AddedVertex> refine_face(FaceMesh& mesh, FaceId face, const Surface& surface, const SizeField& sizes,
                                      const VertexStore& vertices, bool smooth, const Context& context) {
-  return FaceRefiner(mesh, face, surface, sizes, vertices).run(smooth, context);
+  FaceRefiner refiner(mesh, face, surface, sizes, vertices);
+  if (!refiner.wraps()) return refiner.run(false, smooth, context);
+  if (has_even_form(surface.kind())) return refiner.run(true, smooth, context);
+  const FaceMesh start = mesh;
+  std::vector<AddedVertex> added = refiner.run(false, smooth, context);
+  const std::size_t folds = refiner.count_folds();
+  if (folds == 0) return added;
+  FaceMesh other = start;
+  FaceRefiner again(other, face, surface, sizes, vertices);
+  std::vector<AddedVertex> others = again.run(true, smooth, context);
+  if (again.count_folds() >= folds) return added;
+  mesh = std::move(other);
+  return others;
 }
 
 }  // namespace curvetet

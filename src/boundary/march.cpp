@@ -15,6 +15,7 @@
 #include <numbers>
 #include <set>
 
+#include "boundary/criteria.h"
 #include "boundary/refine_surface.h"
 #include "predicates/predicates.h"
 #include "quality/measures.h"

@@ -32,8 +32,6 @@ double longest_edge(const VertexStore& vertices, const std::array<VertexId, 3>& 
 double deviation(const Conjoint& conjoint, FaceId face, TriangleId triangle);
 /// As facing in boundary/criteria.h, of a triangle of t_3d. A fold has it at or below zero.
 double facing(const Conjoint& conjoint, FaceId face, TriangleId triangle);
-/// Cosine of the angle to the surface's normal, 84 degrees, from which a facet counts as folded.
-inline constexpr double kFolded = 0.1;
 struct SurfaceFoot {
   Vec2 uv;  ///< within the box of the face's domain
   double distance = 0;

@@ -229,10 +229,13 @@ Error fault_error(const Attempt& result, const std::string& source) {
       if (const auto open = free_edges(solids(i)); !open.empty()) return open_shell(result.body, source, open);
     }
   }
-  return Error{first->kind == ModelFault::Kind::solid_open ? ErrorCode::open_shell : ErrorCode::bad_face,
-               first->entity + " of " + source + " " + first->what,
-               entities,
-               {},
+  const auto code_of = [](ModelFault::Kind kind) {
+    if (kind == ModelFault::Kind::solid_open) return ErrorCode::open_shell;
+    return kind == ModelFault::Kind::crosses_itself ? ErrorCode::self_intersection : ErrorCode::bad_face;
+  };
+  std::optional<Vec3> place;
+  if (first->where) place = result.model.value().frame.to_cad(*first->where);
+  return Error{code_of(first->kind), first->entity + " of " + source + " " + first->what, entities, place,
                "repair it in the CAD system, or export with a tighter tolerance"};
 }
 

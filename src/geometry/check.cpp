@@ -26,7 +26,7 @@ class Checker {
 
  private:
   void add(ModelFault::Kind kind, std::string entity, std::string what, double amount = 0) {
-    faults_.push_back({kind, std::move(entity), std::move(what), amount});
+    faults_.push_back({kind, std::move(entity), std::move(what), amount, {}});
   }
   std::string face_entity(FaceId f) const { return "face " + std::to_string(model_.faces[f].label.cad_id); }
   std::string edge_entity(EdgeId e) const { return "edge " + std::to_string(model_.edges[e].label.cad_id); }
@@ -77,6 +77,19 @@ class Checker {
     if (!open && !(area > 0)) {
       add(ModelFault::Kind::inside_out, face_entity(f), "its loops bound no positive area", area);
     }
+    check_apex(f);
+  }
+
+  /// Beyond the apex a cone goes on as its mirror image, with the side of the material changed.
+  void check_apex(FaceId f) {
+    const ModelFace& face = model_.faces[f];
+    if (face.surface->kind() != SurfaceKind::cone) return;
+    const SurfaceFirst below = face.surface->first(face.low), above = face.surface->first({face.low.x, face.high.y});
+    const double r = norm(below.du), s = norm(above.du);  // the radii there
+    if (dot(below.du, above.du) >= 0 || std::min(r, s) <= allowed(face.tolerance)) return;
+    faults_.push_back({ModelFault::Kind::crosses_itself, face_entity(f),
+                       "is on both sides of its cone's apex and crosses itself there", std::min(r, s),
+                       below.value + (r / (r + s)) * (above.value - below.value)});
   }
 
   double loop_area(const Loop& loop) const {
@@ -184,8 +197,8 @@ class Checker {
 }  // namespace
 
 const char* name(ModelFault::Kind kind) {
-  static constexpr std::array names{"reference",  "vertex_off", "curve_off", "loop_open",
-                                    "inside_out", "solid_open", "not_finite"};
+  static constexpr std::array names{"reference",  "vertex_off", "curve_off",  "loop_open",
+                                    "inside_out", "solid_open", "not_finite", "crosses_itself"};
   return names[static_cast<std::size_t>(kind)];
 }
 

@@ -12,7 +12,8 @@ struct EnclosedVolume {
 
 /// Integrates (x . n) / 3 over the solid's faces. A face with the solid on both sides adds nothing. Gaps between faces
 /// count as they do in any sum over faces. REQUIRED: the uses of every loop are on one lift, as Loop says. Complexity:
-/// some ten thousand evaluations of the surface for every use of an edge.
+/// some ten thousand evaluations of the surface for every use of an edge, up to a million where an edge has many
+/// waves.
 EnclosedVolume enclosed_volume(const Model& model, SolidId solid);
 
 }  // namespace curvetet

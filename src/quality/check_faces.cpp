@@ -21,7 +21,11 @@ namespace {
 constexpr int kGuessSamples = 17;   ///< per direction, for guesses
 constexpr int kManySamples = 160;   ///< per direction, where those lead nowhere: threads and other wound surfaces
 constexpr int kCoverSamples = 8;    ///< per direction, for coverage
-constexpr int kSamplesPerUse = 24;  ///< of a loop's parameter curves
+constexpr int kSamplesPerUse = 24;  ///< of a loop's parameter curves, before bisection
+constexpr int kDepth = 12;          ///< of that bisection
+// Of the extent of the face's domain: what a loop's polygon may leave the loop by, and how near to the polygon a point
+// is too close to tell its side.
+constexpr double kLoopDeviation = 0.004, kTooClose = 0.02;
 constexpr std::size_t kGridGuesses = 4;
 constexpr double kAnyDistance = std::numeric_limits<double>::infinity();
 
@@ -57,38 +61,70 @@ double point_triangle_distance2(Vec3 p, Vec3 a, Vec3 b, Vec3 c) {
   return over ? std::min(sides, height * height / n2) : sides;
 }
 
-/// Turns of a closed polygon around a point; empty when the point is too close to tell or the polygon is open.
-std::optional<int> winding(const std::vector<Vec2>& polygon, Vec2 p, Vec2 extent) {
+double point_segment_distance(Vec2 p, Vec2 a, Vec2 b) {
+  const Vec2 ab = b - a;
+  const double length2 = norm2(ab);
+  const double t = length2 > 0 ? std::clamp(dot(p - a, ab) / length2, 0.0, 1.0) : 0;
+  return norm(p - (a + t * ab));
+}
+
+/// Turns of a closed polygon around a point; empty when the point is too close to tell.
+std::optional<int> winding(const std::vector<Vec2>& polygon, Vec2 p) {
   double angle = 0;
   for (std::size_t i = 0; i < polygon.size(); ++i) {
-    const Vec2 a = polygon[i] - p, b = polygon[(i + 1) % polygon.size()] - p;
-    const Vec2 as{a.x / extent.x, a.y / extent.y}, bs{b.x / extent.x, b.y / extent.y};
-    if (norm(as) < 0.02) return std::nullopt;
-    const double step = std::atan2(cross(as, bs), dot(as, bs));
-    if (std::abs(step) > 0.9 * std::numbers::pi) return std::nullopt;
-    angle += step;
+    const Vec2 a = polygon[i], b = polygon[(i + 1) % polygon.size()];
+    if (point_segment_distance(p, a, b) < kTooClose) return std::nullopt;
+    angle += std::atan2(cross(a - p, b - p), dot(a - p, b - p));
   }
   return static_cast<int>(std::lround(angle / (2 * std::numbers::pi)));
 }
 
-/// The loop as a polygon in (u,v); empty when its uses do not join.
-std::vector<Vec2> loop_polygon(const Loop& loop, const std::vector<std::array<double, 2>>& ranges, Vec2 extent) {
-  std::vector<Vec2> polygon;
-  for (std::size_t k = 0; k < loop.uses.size(); ++k) {
-    const EdgeUse& use = loop.uses[k];
-    if (!use.curve) return {};
-    for (int i = 0; i <= kSamplesPerUse; ++i) {
-      const double s = static_cast<double>(use.reversed ? kSamplesPerUse - i : i) / kSamplesPerUse;
-      const Vec2 q = use.curve->value(ranges[k][0] + s * (ranges[k][1] - ranges[k][0]));
-      if (i == 0 && !polygon.empty()) {
-        const Vec2 gap = q - polygon.back();
-        if (std::abs(gap.x) > 0.01 * extent.x || std::abs(gap.y) > 0.01 * extent.y) return {};
+/// The loops of a face as polygons in its (u,v), in which its domain is a unit square.
+class LoopPolygons {
+ public:
+  LoopPolygons(const Model& model, const ModelFace& face) : model_(model), face_(face) {}
+
+  /// Empty when the loop's uses do not join.
+  std::vector<Vec2> of(const Loop& loop) {
+    polygon_.clear();
+    for (const EdgeUse& use : loop.uses) {
+      if (!use.curve) return {};
+      const ModelEdge& edge = model_.edges[use.edge];
+      const double from = use.reversed ? edge.high : edge.low, to = use.reversed ? edge.low : edge.high;
+      const Vec2 start = at(use, from);
+      if (!polygon_.empty()) {
+        const Vec2 gap = start - polygon_.back();
+        if (std::abs(gap.x) > 0.01 || std::abs(gap.y) > 0.01) return {};
       }
-      polygon.push_back(q);
+      polygon_.push_back(start);
+      for (int i = 0; i < kSamplesPerUse; ++i)
+        append(use, from + (to - from) * i / kSamplesPerUse, from + (to - from) * (i + 1) / kSamplesPerUse, 0);
     }
+    return polygon_;
   }
-  return polygon;
-}
+
+ private:
+  Vec2 at(const EdgeUse& use, double t) const {
+    const Vec2 extent = face_.high - face_.low, q = use.curve->value(t) - face_.low;
+    return {q.x / extent.x, q.y / extent.y};
+  }
+
+  /// What follows the polygon's last point, that at `from`.
+  void append(const EdgeUse& use, double from, double to, int depth) {
+    const double middle = 0.5 * (from + to);
+    const Vec2 end = at(use, to);
+    if (depth < kDepth && point_segment_distance(at(use, middle), polygon_.back(), end) > kLoopDeviation) {
+      append(use, from, middle, depth + 1);
+      append(use, middle, to, depth + 1);
+      return;
+    }
+    polygon_.push_back(end);
+  }
+
+  const Model& model_;
+  const ModelFace& face_;
+  std::vector<Vec2> polygon_;
+};
 
 /// One face's task.
 class FaceTask {
@@ -226,24 +262,22 @@ std::vector<Vec2> FaceTask::domain_samples(const Model& model, const ModelFace& 
   const Vec2 extent = face.high - face.low;
   if (!(extent.x > 0) || !(extent.y > 0)) return {};
   std::vector<std::vector<Vec2>> polygons;
+  LoopPolygons polygon(model, face);
   for (const Loop& loop : face.loops) {
-    std::vector<std::array<double, 2>> ranges;
-    for (const EdgeUse& use : loop.uses) ranges.push_back({model.edges[use.edge].low, model.edges[use.edge].high});
-    polygons.push_back(loop_polygon(loop, ranges, extent));
+    polygons.push_back(polygon.of(loop));
     if (polygons.back().empty()) return {};
   }
   std::vector<Vec2> samples;
   for (int i = 0; i < kCoverSamples * kCoverSamples; ++i) {
     const int row = i / kCoverSamples, column = i % kCoverSamples;
-    const Vec2 p{face.low.x + (column + 0.5) / kCoverSamples * extent.x,
-                 face.low.y + (row + 0.5) / kCoverSamples * extent.y};
+    const Vec2 p{(column + 0.5) / kCoverSamples, (row + 0.5) / kCoverSamples};
     int turns = 0;
-    const bool clear = std::all_of(polygons.begin(), polygons.end(), [&](const std::vector<Vec2>& polygon) {
-      const std::optional<int> w = winding(polygon, p, extent);
+    const bool clear = std::all_of(polygons.begin(), polygons.end(), [&](const std::vector<Vec2>& loop) {
+      const std::optional<int> w = winding(loop, p);
       turns += w.value_or(0);
       return w.has_value();
     });
-    if (clear && turns == 1) samples.push_back(p);
+    if (clear && turns == 1) samples.push_back(face.low + Vec2{p.x * extent.x, p.y * extent.y});
   }
   return samples;
 }

@@ -233,7 +233,21 @@ void check_solids(const MeshOnModel& m, const std::vector<double>& volumes, cons
   }
 }
 
-/// An edge of more than two facets of one solid is right only on a CAD edge that the solid's faces use more than twice.
+/// How often faces of a solid meet an edge; a face meets its seam, and an edge inside of it, from both sides.
+std::size_t sides_at(const Model& model, SolidId solid, EdgeId edge) {
+  const auto is_of_edge = [edge](const EdgeUse& use) { return use.edge == edge; };
+  std::size_t sides = 0;
+  for (const FaceId f : model.edges[edge].faces) {
+    const ModelFace& face = model.faces[f];
+    if ((face.front == solid) == (face.back == solid)) continue;
+    for (const Loop& loop : face.loops)
+      sides += static_cast<std::size_t>(std::count_if(loop.uses.begin(), loop.uses.end(), is_of_edge));
+    if (std::any_of(face.internal_edges.begin(), face.internal_edges.end(), is_of_edge)) sides += 2;
+  }
+  return sides;
+}
+
+/// An edge of more than two facets of one solid is right only on a CAD edge that the solid's faces meet as often.
 void check_crowded_edges(const MeshOnModel& m, Findings& findings) {
   std::map<std::array<std::uint32_t, 2>, EdgeId> segments;
   for (std::size_t i = 0; i < m.mesh.segments.size(); ++i) {
@@ -243,7 +257,8 @@ void check_crowded_edges(const MeshOnModel& m, Findings& findings) {
   for (const CrowdedEdge& edge : m.topology.crowded_edges) {
     const auto found = segments.find({edge.a, edge.b});
     const bool on_edge = found != segments.end() && found->second.valid();
-    if (on_edge && m.model.edges[found->second].faces.size() > 2) continue;
+    const SolidId solid = m.solids[edge.solid];
+    if (on_edge && solid.valid() && sides_at(m.model, solid, found->second) >= edge.facets) continue;
     findings.add("crowded_edge", Severity::error, [&] { return describe(m.mesh, edge); });
   }
 }
