@@ -47,6 +47,9 @@ constexpr int kStalled = 3;
 constexpr double kHeights = 4;
 constexpr int kRoundsThrough = 6;
 
+// Folds that are reported, evenly spread over the list.
+constexpr std::size_t kMostFolds = 200;
+
 class CrossingCure {
  public:
   CrossingCure(Conjoint& conjoint, const CrossingOptions& options, Context& context)
@@ -257,9 +260,8 @@ class CrossingCure {
     bool any = false;
     for (std::uint32_t i : folds_) {
       const SurfaceTriangle& t = triangles_[i];
-      if (!still_there(t) || !refine_triangle(conjoint_, t.face, t.triangle, refinement_).ok()) continue;
-      ++result_.points;
-      any = true;
+      if (!still_there(t)) continue;
+      any |= refine_one(t, deviation_of(i)) || refine_face(t);
     }
     return any;
   }
@@ -301,35 +303,58 @@ class CrossingCure {
       const VertexId a = t.vertices[at], b = t.vertices[(at + 1) % 3];
       done = refine_segment(conjoint_, conjoint_.segment_edge(a, b), a, b, refinement_);
     }
-    if (!done.ok()) done = refine_triangle(conjoint_, t.face, t.triangle, refinement_);
-    if (done.ok()) ++result_.points;
-    return done.ok();
+    if (!done.ok()) return refine_face(t);
+    ++result_.points;
+    return true;
+  }
+
+  bool refine_face(const SurfaceTriangle& t) {
+    if (!refine_triangle(conjoint_, t.face, t.triangle, refinement_).ok()) return false;
+    ++result_.points;
+    return true;
   }
 
   /// Where faces cross, that is the failure, whatever else is left.
   void report_all() {
     for (const TrianglePair& pair : pairs_)
-      if (!faces_cross() || through(pair)) report(pair.first, pair.second, "facets of the surface mesh cross");
+      if (!faces_cross() || through(pair)) report(pair.first, pair.second);
     if (faces_cross()) return;
-    for (std::uint32_t i : folds_) report(i, i, "a facet of the surface mesh is folded against its face");
+    // One place of two faces that cross is as good as another, but each fold has a cause of its own.
+    const std::size_t count = std::min(folds_.size(), kMostFolds);
+    for (std::size_t k = 0; k < count; ++k) report_fold(triangles_[folds_[k * folds_.size() / count]]);
   }
 
-  void report(std::uint32_t i, std::uint32_t j, const char* what) {
+  void report(std::uint32_t i, std::uint32_t j) {
     const SurfaceTriangle &a = triangles_[i], &b = triangles_[j];
     if (!reported_.insert({std::min(a.face, b.face), std::max(a.face, b.face)}).second) return;
     RecoveryFailure failure;
     failure.faces = {a.face, b.face};
-    double shortest = 1;
-    for (std::size_t k = 0; k < 3; ++k) {
-      const Vec3 p = conjoint_.vertices().position(a.vertices[k]);
-      failure.where = failure.where + (1.0 / 3) * p;
-      shortest = std::min(shortest, distance(p, conjoint_.vertices().position(a.vertices[(k + 1) % 3])));
-    }
-    failure.crossing = i != j;
-    failure.size = faces_cross() ? 0 : 0.5 * shortest;
-    failure.proved = i != j && deviation_of(i) <= 8 * kGrid && deviation_of(j) <= 8 * kGrid;
-    failure.what = failure.proved ? "flat facets that lie on their faces cross: the body crosses itself" : what;
+    failure.where = centroid(a);
+    failure.crossing = true;
+    failure.size = faces_cross() ? 0 : 0.5 * shortest_edge(a);
+    failure.proved = deviation_of(i) <= 8 * kGrid && deviation_of(j) <= 8 * kGrid;
+    failure.what = failure.proved ? "flat facets that lie on their faces cross: the body crosses itself"
+                                  : "facets of the surface mesh cross";
     result_.failures.push_back(failure);
+  }
+
+  void report_fold(const SurfaceTriangle& t) {
+    const double size = 0.5 * longest_edge(conjoint_.vertices(), t.vertices);
+    result_.failures.push_back({{t.face}, centroid(t), size, kFoldedFacet});
+  }
+
+  Vec3 centroid(const SurfaceTriangle& t) const {
+    Vec3 sum;
+    for (const VertexId v : t.vertices) sum = sum + conjoint_.vertices().position(v);
+    return (1.0 / 3) * sum;
+  }
+
+  double shortest_edge(const SurfaceTriangle& t) const {
+    double shortest = 1;
+    for (std::size_t k = 0; k < 3; ++k)
+      shortest = std::min(shortest, distance(conjoint_.vertices().position(t.vertices[k]),
+                                             conjoint_.vertices().position(t.vertices[(k + 1) % 3])));
+    return shortest;
   }
 
   Conjoint& conjoint_;

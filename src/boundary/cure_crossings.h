@@ -25,6 +25,8 @@ struct RecoveryFailure {
   bool crossing = false;  ///< facets of the two faces cross, whatever their size
 };
 
+inline constexpr const char* kFoldedFacet = "a facet of the surface mesh is folded against its face";
+
 struct CrossingOptions {
   double floor = 0;
   int rounds = 40;  ///< shells of a ten-thousandth of their radius, as coarse as can be, took thirty

@@ -10,10 +10,15 @@
 
 #include "boundary/boundary_mesh.h"
 #include "boundary/criteria.h"
+#include "quality/model_checks.h"
 
 namespace curvetet {
 
 namespace {
+
+/// Cosine of the angle to the surface's normal at a corner, 66 degrees, from which the surface below may be turned by a
+/// right angle.
+constexpr double kLeaning = 0.4;
 
 /// Cosine to the normal of a triangle that no flip nearby turns round again; one that leans less may be flipped.
 constexpr double kTurnedBack = -0.5;
@@ -212,6 +217,29 @@ double facing_at_foot(const Conjoint& conjoint, FaceId face, const std::array<No
   const std::array<Vec3, 3> p = places_of(conjoint, face, nodes).p;
   const Surface& surface = *conjoint.model().faces[face].surface;
   return foot ? dot(normalized(cross(p[1] - p[0], p[2] - p[0])), surface.normal(foot->uv)) : 1;
+}
+
+std::vector<SurfaceTriangle> facets_turned_away(const Conjoint& conjoint) {
+  std::vector<SurfaceTriangle> found;
+  std::optional<checks::FaceProjector> projector;  // of the face of the last triangle that leaned
+  FaceId projected;
+  for (const SurfaceTriangle& t : surface_triangles(conjoint.boundary())) {
+    const FaceMesh& mesh = conjoint.boundary().faces[t.face];
+    const ModelFace& face = conjoint.model().faces[t.face];
+    const auto [q, p] = places_of(conjoint, t.face, mesh.triangle(t.triangle).node);
+    const Vec3 normal = normalized(cross(p[1] - p[0], p[2] - p[0]));
+    std::array<Vec2, 3> uv;
+    std::transform(q.begin(), q.end(), uv.begin(), [&](Vec2 at) { return mesh.chart.to_uv(at); });
+    const bool leans =
+        std::any_of(uv.begin(), uv.end(), [&](Vec2 at) { return dot(normal, face.surface->normal(at)) < kLeaning; });
+    if (!leans) continue;
+    if (projected != t.face) projector.emplace(face);
+    projected = t.face;
+    const Vec3 centroid = (1.0 / 3) * (p[0] + p[1] + p[2]);
+    const auto foot = projector->project(centroid, uv, std::numeric_limits<double>::infinity());
+    if (foot && projector->looks_away(centroid, face.reversed ? -normal : normal, *foot)) found.push_back(t);
+  }
+  return found;
 }
 
 double segment_deviation(const Conjoint& conjoint, EdgeId edge, VertexId a, VertexId b) {

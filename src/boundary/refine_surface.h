@@ -41,6 +41,9 @@ struct SurfaceFoot {
 std::optional<SurfaceFoot> foot_of(const Conjoint& conjoint, FaceId face, const std::array<NodeId, 3>& nodes);
 /// Cosine of the angle between a triangle's normal and the surface's at its foot; 1 without a foot.
 double facing_at_foot(const Conjoint& conjoint, FaceId face, const std::array<NodeId, 3>& nodes);
+/// The triangles of t_3d that look away from their face where it is closest to them, as the final check sees it. Time:
+/// three normals for each triangle, and feet for those that lean away from their face at a corner.
+std::vector<SurfaceTriangle> facets_turned_away(const Conjoint& conjoint);
 /// Distance from the middle of a segment to the curve at the middle parameter.
 double segment_deviation(const Conjoint& conjoint, EdgeId edge, VertexId a, VertexId b);
 

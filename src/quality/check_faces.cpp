@@ -160,13 +160,8 @@ class FaceTask {
       return;
     }
     outcome.slack += 0.5 * norm(normal) * foot->distance;
-    // Around a sharp bend the corners may lead to a place that is not the closest of the face; and beyond the face's
-    // border its surface may turn back.
-    const bool is_sound = foot->inside_box && !is_against(normal, foot->uv);
-    if (!is_sound && is_against(normal, projector_.closest(centroid, foot->uv))) outcome.folds.push_back(t);
+    if (projector_.looks_away(centroid, normal, *foot)) outcome.folds.push_back(t);
   }
-
-  bool is_against(Vec3 normal, Vec2 uv) const { return dot(normal, projector_.outward_normal(uv)) < 0; }
 
   /// The foot of a node, found once; reports the node if it is off the surface.
   std::optional<Foot> foot_of(std::uint32_t node, std::span<const Vec2> others, FaceOutcome& outcome) {
@@ -289,6 +284,14 @@ FaceProjector::FaceProjector(const ModelFace& face) : face_(face), surface_(face
 Vec3 FaceProjector::outward_normal(Vec2 uv) const {
   const Vec3 n = surface_->normal(uv);
   return face_.reversed ? -n : n;
+}
+
+// Around a sharp bend the corners may lead to a place that is not the closest of the face; and beyond the face's border
+// its surface may turn back.
+bool FaceProjector::looks_away(Vec3 centroid, Vec3 normal, const Foot& foot) {
+  const auto is_against = [&](Vec2 uv) { return dot(normal, outward_normal(uv)) < 0; };
+  if (foot.inside_box && !is_against(foot.uv)) return false;
+  return is_against(closest(centroid, foot.uv));
 }
 
 bool FaceProjector::inside_box(Vec2 uv) const {

@@ -46,6 +46,9 @@ class FaceProjector {
   /// Closest to the point within the domain's box, of what the guess and a grid of samples lead to.
   Vec2 closest(Vec3 point, Vec2 guess);
   Vec3 outward_normal(Vec2 uv) const;
+  /// Whether a triangle with that outward normal looks away from the face where this is closest to its centroid, of
+  /// which `foot` is the foot that `project` found.
+  bool looks_away(Vec3 centroid, Vec3 normal, const Foot& foot);
   Vec3 value(Vec2 uv) const { return surface_->value(uv); }
 
  private:

@@ -13,17 +13,21 @@
 #include <BRepPrimAPI_MakeBox.hxx>
 #include <BRepPrimAPI_MakeCylinder.hxx>
 #include <BRepPrimAPI_MakePrism.hxx>
+#include <BRepPrimAPI_MakeRevol.hxx>
 #include <BRepPrimAPI_MakeTorus.hxx>
 #include <BRep_Builder.hxx>
 #include <BinTools.hxx>
+#include <GC_MakeArcOfCircle.hxx>
 #include <GeomAPI_Interpolate.hxx>
 #include <Geom_BSplineCurve.hxx>
+#include <Geom_TrimmedCurve.hxx>
 #include <TColgp_HArray1OfPnt.hxx>
 #include <TopExp.hxx>
 #include <TopExp_Explorer.hxx>
 #include <TopTools_IndexedMapOfShape.hxx>
 #include <TopoDS.hxx>
 #include <TopoDS_Compound.hxx>
+#include <TopoDS_Face.hxx>
 #include <TopoDS_Shell.hxx>
 #include <TopoDS_Wire.hxx>
 #include <algorithm>
@@ -307,6 +311,32 @@ TEST(MeshOfAShape, AnEdgeMayBendMoreOftenThanItIsLookedAt) {
   EXPECT_TRUE(std::any_of(warnings.begin(), warnings.end(), [](const std::string& w) {
     return w.find("cad_volume") != std::string::npos;
   })) << "the kernel's volume is right: the test needs another body";
+}
+
+/// A flat ring with a full round along its outside, of much smaller radius than its chords are high.
+TopoDS_Shape ring_with_round_rim(double radius) {
+  const gp_Pnt a(0.5, 0, -radius), b(1, 0, -radius), c(1, 0, radius), d(0.5, 0, radius);
+  BRepBuilderAPI_MakeWire outline;
+  outline.Add(BRepBuilderAPI_MakeEdge(a, b));
+  outline.Add(BRepBuilderAPI_MakeEdge(GC_MakeArcOfCircle(b, gp_Pnt(1 + radius, 0, 0), c).Value()));
+  outline.Add(BRepBuilderAPI_MakeEdge(c, d));
+  outline.Add(BRepBuilderAPI_MakeEdge(d, a));
+  const TopoDS_Face section = BRepBuilderAPI_MakeFace(outline.Wire());
+  return BRepPrimAPI_MakeRevol(section, gp_Ax1(gp_Pnt(0, 0, 0), gp_Dir(0, 0, 1))).Shape();
+}
+
+// Facets from one border of the round to the other lie inside of the ring and look away from the round, where it is
+// closest; points on the round do not help, shorter chords do.
+TEST(MeshOfAShape, CoarseChordsAlongAThinRoundAreSplit) {
+  for (const double size : {2.0, 0.7, 0.3}) {
+    Options options;
+    options.size = size;
+    options.curvature = 0;
+    Context context;
+    const Result<MeshOutput> made = mesh(ring_with_round_rim(0.01), options, context);
+    ASSERT_TRUE(made) << size << ": " << made.error().message;
+    EXPECT_TRUE(made.value().report.valid) << size;
+  }
 }
 
 /// A cone of which both nappes are in use.
