@@ -20,7 +20,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <map>
 
 #include "cad/fit.h"
 #include "cad/guard.h"
@@ -28,7 +27,6 @@
 #include "cad/loops.h"
 #include "cad/occt_geometry.h"
 #include "geometry/bounds.h"
-#include "geometry/even_parameter.h"
 #include "geometry/settle_vertices.h"
 #include "geometry/touching_edges.h"
 
@@ -288,7 +286,6 @@ class Converter {
   }
 
   void make_edges() {
-    steps_.clear();
     edge_id_.assign(edge_used_.size(), EdgeId());
     for (const Label& label : body_.edges) next_edge_label_ = std::max(next_edge_label_, label.cad_id);
     for (int e = 1; e <= edges_.Extent(); ++e) {
@@ -315,11 +312,10 @@ class Converter {
     TopExp::Vertices(shape, start, end);
     edge.start = vertex_of(start);
     edge.end = vertex_of(end);
-    std::shared_ptr<const ParameterSteps> steps;
     if (!edge.degenerate) {
       std::unique_ptr<Curve> made = make_curve(curve, model_.frame);
-      steps = steps_along(*made, low, high);
-      edge.curve = evened(std::move(made), steps);
+      edge.steps = steps_along(*made, low, high);
+      edge.curve = evened(std::move(made), edge.steps);
     }
     complete_ends(edge);
     const bool point = joined_.point[static_cast<std::size_t>(number)] != 0;
@@ -329,9 +325,7 @@ class Converter {
       edge.curve = nullptr;
     }
     if (edge.degenerate && edge.low == edge.high) edge.high = edge.low + 1;  // its uses stay at one point
-    const EdgeId id = model_.edges.push_back(std::move(edge));
-    if (steps != nullptr) steps_.emplace(id, steps);
-    return id;
+    return model_.edges.push_back(std::move(edge));
   }
 
   /// A closed curve may come without a vertex.
@@ -376,10 +370,6 @@ class Converter {
     context.model = &model_;
     context.edge = [this](const TopoDS_Edge& edge) {
       return edge_id_[static_cast<std::size_t>(edges_.FindIndex(edge))];
-    };
-    context.steps = [this](EdgeId edge) {
-      const auto known = steps_.find(edge);
-      return known == steps_.end() ? nullptr : known->second;
     };
     context.add_pole = [this](CadVertexId vertex) { return add_pole(vertex); };
     for (int f = 1; f <= faces_.Extent(); ++f) {
@@ -529,7 +519,6 @@ class Converter {
   std::vector<char> side_set_;
   std::vector<FaceId> face_id_;
   std::vector<EdgeId> edge_id_;
-  std::map<EdgeId, std::shared_ptr<const ParameterSteps>> steps_;  ///< of edges with a parameter of our own
   std::vector<CadVertexId> vertex_id_;
   std::uint32_t next_vertex_label_ = 0, next_edge_label_ = 0;
   std::size_t ignored_ = 0, shell_count_ = 0;

@@ -83,7 +83,7 @@ class Tracer {
       raw.map.scale = (last - first) / length;
       raw.map.offset = first - raw.map.scale * model_edge.low;
     }
-    raw.use.curve = evened(make_parameter_curve(raw.curve, raw.map), context_.steps(raw.use.edge));
+    raw.use.curve = evened(make_parameter_curve(raw.curve, raw.map), context_.model->edges[raw.use.edge].steps);
     const double middle = 0.5 * (model_edge.low + model_edge.high);
     raw.begin = raw.use.curve->value(raw.use.reversed ? model_edge.high : model_edge.low);
     raw.end = raw.use.curve->value(raw.use.reversed ? model_edge.low : model_edge.high);
@@ -200,7 +200,7 @@ class Tracer {
       const RawUse& next = chain[(i + 1) % chain.size()];
       if (!raw.curve.IsNull() && raw.shift != Vec2{}) {
         raw.map.shift = raw.shift;
-        raw.use.curve = evened(make_parameter_curve(raw.curve, raw.map), context_.steps(raw.use.edge));
+        raw.use.curve = evened(make_parameter_curve(raw.curve, raw.map), context_.model->edges[raw.use.edge].steps);
       }
       loop.uses.push_back(raw.use);
       if (raw.use.curve == nullptr || next.use.curve == nullptr) continue;

@@ -6,7 +6,6 @@
 #include <functional>
 #include <vector>
 
-#include "geometry/even_parameter.h"
 #include "geometry/model.h"
 
 namespace curvetet {
@@ -15,8 +14,6 @@ namespace curvetet {
 struct LoopContext {
   const Model* model = nullptr;
   std::function<EdgeId(const TopoDS_Edge&)> edge;
-  /// Of an edge whose curve goes by another parameter than the CAD's; null for the others.
-  std::function<std::shared_ptr<const ParameterSteps>(EdgeId)> steps;
   /// Makes a degenerate edge at a vertex, with the parameter range [0, 1].
   std::function<EdgeId(CadVertexId)> add_pole;
 };

@@ -103,20 +103,24 @@ bool is_uneven(const std::vector<Place>& places, double low, double high) {
 ParameterSteps::ParameterSteps(std::vector<double> even, std::vector<double> own)
     : even_(std::move(even)), own_(std::move(own)) {}
 
-std::size_t ParameterSteps::step_of(double even) const {
-  const auto upper = std::upper_bound(even_.begin() + 1, even_.end() - 1, even);
-  return static_cast<std::size_t>(upper - even_.begin());
+std::size_t ParameterSteps::step_of(const std::vector<double>& of, double value) {
+  const auto upper = std::upper_bound(of.begin() + 1, of.end() - 1, value);
+  return static_cast<std::size_t>(upper - of.begin());
 }
 
-double ParameterSteps::own(double even) const {
-  if (!(even > even_.front()) || !(even < even_.back())) return even;
-  const std::size_t i = step_of(even);
-  return own_[i - 1] + (even - even_[i - 1]) / (even_[i] - even_[i - 1]) * (own_[i] - own_[i - 1]);
+double ParameterSteps::mapped(const std::vector<double>& from, const std::vector<double>& to, double value) {
+  if (!(value > from.front()) || !(value < from.back())) return value;
+  const std::size_t i = step_of(from, value);
+  return to[i - 1] + (value - from[i - 1]) / (from[i] - from[i - 1]) * (to[i] - to[i - 1]);
 }
+
+double ParameterSteps::own(double even) const { return mapped(even_, own_, even); }
+
+double ParameterSteps::even(double own) const { return mapped(own_, even_, own); }
 
 double ParameterSteps::slope(double even) const {
   if (even < even_.front() || even > even_.back()) return 1;
-  const std::size_t i = step_of(even);
+  const std::size_t i = step_of(even_, even);
   return (own_[i] - own_[i - 1]) / (even_[i] - even_[i - 1]);
 }
 

@@ -15,11 +15,13 @@ class ParameterSteps {
   /// Both rising, with the same ends.
   ParameterSteps(std::vector<double> even, std::vector<double> own);
   double own(double even) const;
+  double even(double own) const;
   /// How fast the own parameter runs there.
   double slope(double even) const;
 
  private:
-  std::size_t step_of(double even) const;
+  static std::size_t step_of(const std::vector<double>& of, double value);
+  static double mapped(const std::vector<double>& from, const std::vector<double>& to, double value);
 
   std::vector<double> even_, own_;
 };

@@ -12,6 +12,7 @@
 
 #include "base/ids.h"
 #include "base/vec.h"
+#include "geometry/even_parameter.h"
 #include "geometry/frame.h"
 #include "geometry/surface.h"
 
@@ -39,13 +40,18 @@ struct ModelEdge {
   Label label;
   std::shared_ptr<const Curve> curve;  ///< null for a degenerate edge (a pole)
   double low = 0, high = 0;            ///< parameter range, low < high
-  CadVertexId start, end;              ///< at low and at high; equal for a closed edge and for a degenerate one
-  double tolerance = 0;                ///< working units
-  bool degenerate = false;             ///< a pole: one point in space, a curve only in (u,v)
-  std::vector<FaceId> faces;           ///< faces that use it, each once, ascending
+  /// From the parameter of `curve` to the CAD's; null if they are the same (see even_parameter.h).
+  std::shared_ptr<const ParameterSteps> steps;
+  CadVertexId start, end;     ///< at low and at high; equal for a closed edge and for a degenerate one
+  double tolerance = 0;       ///< working units
+  bool degenerate = false;    ///< a pole: one point in space, a curve only in (u,v)
+  std::vector<FaceId> faces;  ///< faces that use it, each once, ascending
   /// An edge in the same place that the body does not share (see touching_edges.h); both are cut at the same places.
   EdgeId twin;
   double twin_shift = 0, twin_scale = 1;  ///< own parameter: shift + scale * that of the twin
+
+  double own_parameter(double t) const { return steps ? steps->own(t) : t; }
+  double from_own_parameter(double t) const { return steps ? steps->even(t) : t; }
 };
 
 /// One use of an edge by a face. A seam has two uses in one face, with two parameter curves.

@@ -61,7 +61,7 @@ class Assembly {
     NodeOnCad node;
     node.dimension = static_cast<std::uint8_t>(owner.kind);
     node.entity = owner.index;
-    node.parameter = {q.x, q.y};
+    node.parameter = {owner.kind == OwnerKind::edge ? model_.edges[EdgeId(owner.index)].own_parameter(q.x) : q.x, q.y};
     mesh_.nodes.push_back(node);
   }
 

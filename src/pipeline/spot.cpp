@@ -74,7 +74,8 @@ class Spot {
     mesh_.points.push_back({p.x, p.y, p.z});
     const Owner owner = body_.vertices.owner(v);
     const Vec2 q = body_.vertices.parameter(v);
-    mesh_.nodes.push_back({static_cast<std::uint8_t>(owner.kind), owner.index, {q.x, q.y}});
+    const double first = owner.kind == OwnerKind::edge ? model_.edges[EdgeId(owner.index)].own_parameter(q.x) : q.x;
+    mesh_.nodes.push_back({static_cast<std::uint8_t>(owner.kind), owner.index, {first, q.y}});
     return number;
   }
 

@@ -143,7 +143,7 @@ class EdgeTask {
     if (node < m_.mesh.nodes.size()) {
       const NodeOnCad& owner = m_.mesh.nodes[node];
       if (owner.dimension == 1 && owner.entity < m_.edges.size() && m_.edges[owner.entity] == id_) {
-        const double guess = std::clamp(owner.parameter[0], edge_.low, edge_.high);
+        const double guess = std::clamp(edge_.from_own_parameter(owner.parameter[0]), edge_.low, edge_.high);
         return curve_->project(m_.points[node], guess, edge_.low, edge_.high);
       }
     }

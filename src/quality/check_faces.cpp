@@ -188,7 +188,10 @@ class FaceTask {
     if (owner.dimension != 1 || owner.entity >= m_.edges.size()) return {};
     const auto [first, last] = std::equal_range(uses_.begin(), uses_.end(), UseOfEdge{m_.edges[owner.entity], nullptr});
     std::vector<Vec2> guesses;
-    for (auto use = first; use != last; ++use) guesses.push_back(use->curve->value(owner.parameter[0]));
+    for (auto use = first; use != last; ++use) {
+      const double t = m_.model.edges[use->edge].from_own_parameter(owner.parameter[0]);
+      guesses.push_back(use->curve->value(t));
+    }
     return guesses;
   }
 

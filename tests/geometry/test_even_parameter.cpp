@@ -82,6 +82,7 @@ TEST(EvenParameter, IsRisingAndKeepsTheEndsAndTheDerivatives) {
     const double t = i / 1000.0, own = steps->own(t);
     EXPECT_GT(own, last);
     last = own;
+    EXPECT_NEAR(steps->even(own), t, 1e-7) << "the own parameter has no more digits there";
     EXPECT_NEAR(curve->curvature(t), 1, 1e-6);
     const CurveSecond at = curve->second(t);
     uneven += std::abs(norm(at.dt) - 2 * std::numbers::pi) > 0.1 ? 1 : 0;
