@@ -26,7 +26,11 @@ constexpr int kDepth = 12;          ///< of that bisection
 // Of the extent of the face's domain: what a loop's polygon may leave the loop by, and how near to the polygon a point
 // is too close to tell its side.
 constexpr double kLoopDeviation = 0.004, kTooClose = 0.02;
+constexpr double kGap = 0.01;  ///< the same for uses that join
 constexpr std::size_t kGridGuesses = 4;
+constexpr int kDescentSteps = 20;
+constexpr double kLeastDescent = 1e-3;  ///< of a full step
+constexpr double kDescentGain = 1e-6;   ///< of the distance, below which a step is not worth it
 constexpr double kAnyDistance = std::numeric_limits<double>::infinity();
 
 /// What one face's task finds.
@@ -92,18 +96,18 @@ class LoopPolygons {
       const ModelEdge& edge = model_.edges[use.edge];
       const double from = use.reversed ? edge.high : edge.low, to = use.reversed ? edge.low : edge.high;
       const Vec2 start = at(use, from);
-      if (!polygon_.empty()) {
-        const Vec2 gap = start - polygon_.back();
-        if (std::abs(gap.x) > 0.01 || std::abs(gap.y) > 0.01) return {};
-      }
+      if (!polygon_.empty() && !is_join(polygon_.back(), start)) return {};
       polygon_.push_back(start);
       for (int i = 0; i < kSamplesPerUse; ++i)
         append(use, from + (to - from) * i / kSamplesPerUse, from + (to - from) * (i + 1) / kSamplesPerUse, 0);
     }
+    if (polygon_.empty() || !is_join(polygon_.back(), polygon_.front())) return {};
     return polygon_;
   }
 
  private:
+  static bool is_join(Vec2 a, Vec2 b) { return std::abs(a.x - b.x) <= kGap && std::abs(a.y - b.y) <= kGap; }
+
   Vec2 at(const EdgeUse& use, double t) const {
     const Vec2 extent = face_.high - face_.low, q = use.curve->value(t) - face_.low;
     return {q.x / extent.x, q.y / extent.y};
@@ -317,11 +321,11 @@ void FaceProjector::consider(Vec3 point, Vec2 guess, std::optional<Foot>& best) 
 
 Vec2 FaceProjector::closest(Vec3 point, Vec2 guess) {
   if (coarse_.uv.empty()) coarse_.fill(face_, *surface_, kGuessSamples);
-  Vec2 best = within_box(face_, guess);
+  Vec2 best = descend(point, within_box(face_, guess));
   double least = distance(point, surface_->value(best));
   for (const Vec2 sample : coarse_.nearest(point)) {
     const auto foot = surface_->project(point, sample);
-    for (const Vec2 uv : {sample, within_box(face_, foot.value_or(sample))}) {
+    for (const Vec2 uv : {descend(point, sample), within_box(face_, foot.value_or(sample))}) {
       const double away = distance(point, surface_->value(uv));
       if (away >= least) continue;
       least = away;
@@ -329,6 +333,31 @@ Vec2 FaceProjector::closest(Vec3 point, Vec2 guess) {
     }
   }
   return best;
+}
+
+// Gauss-Newton, each step cut off at the box and halved until it leads closer. A projection that does not know of the
+// box may end turns away from it, on a face that is a part of a round.
+Vec2 FaceProjector::descend(Vec3 point, Vec2 uv) const {
+  double least = distance(point, surface_->value(uv));
+  for (int step = 0; step < kDescentSteps; ++step) {
+    const SurfaceFirst at = surface_->first(uv);
+    const Vec3 off = point - at.value;
+    const double e = norm2(at.du), f = dot(at.du, at.dv), g = norm2(at.dv), determinant = e * g - f * f;
+    if (!(determinant > 0)) return uv;
+    const double p = dot(off, at.du), q = dot(off, at.dv);
+    const Vec2 full{(p * g - q * f) / determinant, (q * e - p * f) / determinant};
+    bool is_closer = false;
+    for (double part = 1; part > kLeastDescent && !is_closer; part *= 0.5) {
+      const Vec2 next = within_box(face_, uv + part * full);
+      const double away = distance(point, surface_->value(next));
+      if (!(away < (1 - kDescentGain) * least)) continue;
+      is_closer = true;
+      least = away;
+      uv = next;
+    }
+    if (!is_closer) return uv;
+  }
+  return uv;
 }
 
 void FaceProjector::Grid::fill(const ModelFace& face, const Surface& surface, int samples) {

@@ -59,6 +59,8 @@ class FaceProjector {
     std::vector<Vec2> nearest(Vec3 point) const;
   };
   bool inside_box(Vec2 uv) const;
+  /// From a place within the domain's box to one that is no farther from the point, without leaving the box.
+  Vec2 descend(Vec3 point, Vec2 uv) const;
   void consider(Vec3 point, Vec2 guess, std::optional<Foot>& best) const;
 
   const ModelFace& face_;

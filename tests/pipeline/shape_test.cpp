@@ -328,14 +328,16 @@ TopoDS_Shape ring_with_round_rim(double radius) {
 // Facets from one border of the round to the other lie inside of the ring and look away from the round, where it is
 // closest; points on the round do not help, shorter chords do.
 TEST(MeshOfAShape, CoarseChordsAlongAThinRoundAreSplit) {
-  for (const double size : {2.0, 0.7, 0.3}) {
-    Options options;
-    options.size = size;
-    options.curvature = 0;
-    Context context;
-    const Result<MeshOutput> made = mesh(ring_with_round_rim(0.01), options, context);
-    ASSERT_TRUE(made) << size << ": " << made.error().message;
-    EXPECT_TRUE(made.value().report.valid) << size;
+  for (const double radius : {0.01, 0.003}) {
+    for (const double size : {2.0, 0.7, 0.3}) {
+      Options options;
+      options.size = size;
+      options.curvature = 0;
+      Context context;
+      const Result<MeshOutput> made = mesh(ring_with_round_rim(radius), options, context);
+      ASSERT_TRUE(made) << radius << " at " << size << ": " << made.error().message;
+      EXPECT_TRUE(made.value().report.valid) << radius << " at " << size;
+    }
   }
 }
 

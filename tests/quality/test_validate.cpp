@@ -516,6 +516,46 @@ TEST(FaceProjector, FindsTheClosestPointOfTheFaceThoughTheSurfaceBeyondIsCloser)
   }
 }
 
+/// The outside of a thin ring, over half a turn of its section, that does not know of its period.
+class Rim final : public Surface {
+ public:
+  explicit Rim(double radius) : radius_(radius) {}
+  SurfaceKind kind() const override { return SurfaceKind::revolution; }
+  Vec3 value(Vec2 uv) const override {
+    const double r = 1 + radius_ * std::sin(uv.y);
+    return {r * std::cos(uv.x), r * std::sin(uv.x), -radius_ * std::cos(uv.y)};
+  }
+  SurfaceFirst first(Vec2 uv) const override {
+    const double r = 1 + radius_ * std::sin(uv.y), c = radius_ * std::cos(uv.y);
+    return {value(uv),
+            {-r * std::sin(uv.x), r * std::cos(uv.x), 0},
+            {c * std::cos(uv.x), c * std::sin(uv.x), radius_ * std::sin(uv.y)}};
+  }
+  SurfaceSecond second(Vec2 uv) const override {
+    const SurfaceFirst at = first(uv);
+    return {at.value, at.du, at.dv, {}, {}, {}};
+  }
+  std::unique_ptr<Surface> clone() const override { return std::make_unique<Rim>(*this); }
+
+ private:
+  double radius_;
+};
+
+TEST(FaceProjector, FindsTheClosestPointOfAThinRoundFromInside) {
+  constexpr double kRadius = 0.003;
+  ModelFace face;
+  face.surface = std::make_shared<Rim>(kRadius);
+  face.low = {0, 0};
+  face.high = {2 * std::numbers::pi, std::numbers::pi};
+  checks::FaceProjector projector(face);
+  for (int i = 0; i < 100; ++i) {
+    const double u = 0.06 * i, v = 0.02 + 0.031 * i, depth = (0.1 + 0.008 * i) * kRadius;
+    const Vec3 point = face.surface->value({u, v}) - depth * face.surface->normal({u, v});
+    for (const Vec2 guess : {Vec2{u + 0.05, 0.5}, Vec2{u, -110.7}, Vec2{u, 9}})
+      EXPECT_LT(distance(face.surface->value(projector.closest(point, guess)), point), depth * (1 + 1e-3)) << i;
+  }
+}
+
 /// A flat face whose surface turns back beyond the border, and finds all its feet there.
 class TurnedBack final : public Surface {
  public:
