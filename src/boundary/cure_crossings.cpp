@@ -50,6 +50,15 @@ constexpr int kRoundsThrough = 6;
 // Folds that are reported, evenly spread over the list.
 constexpr std::size_t kMostFolds = 200;
 
+// A facet or segment that is no farther lies on its face or curve.
+constexpr double kFlush = 8 * kGrid;
+
+Vec3 centroid(const VertexStore& vertices, const SurfaceTriangle& t) {
+  Vec3 sum;
+  for (const VertexId v : t.vertices) sum = sum + vertices.position(v);
+  return (1.0 / 3) * sum;
+}
+
 class CrossingCure {
  public:
   CrossingCure(Conjoint& conjoint, const CrossingOptions& options, Context& context)
@@ -261,7 +270,7 @@ class CrossingCure {
     for (std::uint32_t i : folds_) {
       const SurfaceTriangle& t = triangles_[i];
       if (!still_there(t)) continue;
-      any |= refine_one(t, deviation_of(i)) || refine_face(t);
+      any |= split_chord(t, deviation_of(i)) || refine_facet(t);
     }
     return any;
   }
@@ -282,11 +291,14 @@ class CrossingCure {
     return largest;
   }
 
+  bool refine_one(const SurfaceTriangle& t, double dev) {
+    return dev > kFlush && (split_chord(t, dev) || refine_facet(t));
+  }
+
   // A segment that leaves its curve about as far as the triangle leaves its face is split first: a point inside the
   // triangle would not move the chord.
-  bool refine_one(const SurfaceTriangle& t, double dev) {
-    if (dev <= 8 * kGrid) return false;
-    double worst = 0;
+  bool split_chord(const SurfaceTriangle& t, double dev) {
+    double worst = std::max(0.5 * dev, kFlush);
     std::size_t at = 3;
     for (std::size_t k = 0; k < 3; ++k) {
       const VertexId a = t.vertices[k], b = t.vertices[(k + 1) % 3];
@@ -298,20 +310,18 @@ class CrossingCure {
         at = k;
       }
     }
-    ConjointResult done{ConjointRefusal::no_segment, {}};
-    if (at < 3 && worst > 0.5 * dev) {
-      const VertexId a = t.vertices[at], b = t.vertices[(at + 1) % 3];
-      done = refine_segment(conjoint_, conjoint_.segment_edge(a, b), a, b, refinement_);
-    }
-    if (!done.ok()) return refine_face(t);
-    ++result_.points;
-    return true;
+    if (at == 3) return false;
+    const VertexId a = t.vertices[at], b = t.vertices[(at + 1) % 3];
+    return count(refine_segment(conjoint_, conjoint_.segment_edge(a, b), a, b, refinement_));
   }
 
-  bool refine_face(const SurfaceTriangle& t) {
-    if (!refine_triangle(conjoint_, t.face, t.triangle, refinement_).ok()) return false;
-    ++result_.points;
-    return true;
+  bool refine_facet(const SurfaceTriangle& t) {
+    return count(refine_triangle(conjoint_, t.face, t.triangle, refinement_));
+  }
+
+  bool count(const ConjointResult& done) {
+    if (done.ok()) ++result_.points;
+    return done.ok();
   }
 
   /// Where faces cross, that is the failure, whatever else is left.
@@ -319,9 +329,10 @@ class CrossingCure {
     for (const TrianglePair& pair : pairs_)
       if (!faces_cross() || through(pair)) report(pair.first, pair.second);
     if (faces_cross()) return;
-    // One place of two faces that cross is as good as another, but each fold has a cause of its own.
-    const std::size_t count = std::min(folds_.size(), kMostFolds);
-    for (std::size_t k = 0; k < count; ++k) report_fold(triangles_[folds_[k * folds_.size() / count]]);
+    std::vector<SurfaceTriangle> folded;
+    for (const std::uint32_t i : folds_) folded.push_back(triangles_[i]);
+    for (RecoveryFailure& failure : fold_failures(conjoint_.vertices(), folded))
+      result_.failures.push_back(std::move(failure));
   }
 
   void report(std::uint32_t i, std::uint32_t j) {
@@ -329,24 +340,13 @@ class CrossingCure {
     if (!reported_.insert({std::min(a.face, b.face), std::max(a.face, b.face)}).second) return;
     RecoveryFailure failure;
     failure.faces = {a.face, b.face};
-    failure.where = centroid(a);
+    failure.where = centroid(conjoint_.vertices(), a);
     failure.crossing = true;
     failure.size = faces_cross() ? 0 : 0.5 * shortest_edge(a);
-    failure.proved = deviation_of(i) <= 8 * kGrid && deviation_of(j) <= 8 * kGrid;
+    failure.proved = deviation_of(i) <= kFlush && deviation_of(j) <= kFlush;
     failure.what = failure.proved ? "flat facets that lie on their faces cross: the body crosses itself"
                                   : "facets of the surface mesh cross";
     result_.failures.push_back(failure);
-  }
-
-  void report_fold(const SurfaceTriangle& t) {
-    const double size = 0.5 * longest_edge(conjoint_.vertices(), t.vertices);
-    result_.failures.push_back({{t.face}, centroid(t), size, kFoldedFacet});
-  }
-
-  Vec3 centroid(const SurfaceTriangle& t) const {
-    Vec3 sum;
-    for (const VertexId v : t.vertices) sum = sum + conjoint_.vertices().position(v);
-    return (1.0 / 3) * sum;
   }
 
   double shortest_edge(const SurfaceTriangle& t) const {
@@ -374,6 +374,19 @@ class CrossingCure {
 };
 
 }  // namespace
+
+std::vector<RecoveryFailure> fold_failures(const VertexStore& vertices, const std::vector<SurfaceTriangle>& folded) {
+  std::vector<RecoveryFailure> failures;
+  const std::size_t count = std::min(folded.size(), kMostFolds);
+  for (std::size_t k = 0; k < count; ++k) {
+    const SurfaceTriangle& t = folded[k * folded.size() / count];
+    failures.push_back({{t.face},
+                        centroid(vertices, t),
+                        0.5 * longest_edge(vertices, t.vertices),
+                        "a facet of the surface mesh is folded against its face"});
+  }
+  return failures;
+}
 
 Result<CrossingResult> cure_crossings(Conjoint& conjoint, const CrossingOptions& options, Context& context) {
   return CrossingCure(conjoint, options, context).run();

@@ -25,7 +25,10 @@ struct RecoveryFailure {
   bool crossing = false;  ///< facets of the two faces cross, whatever their size
 };
 
-inline constexpr const char* kFoldedFacet = "a facet of the surface mesh is folded against its face";
+/// Of facets that are folded against their faces: half their longest edges would do. One place of two faces that cross
+/// is as good as another, but each fold has a cause of its own; of very many some are told, evenly spread over the
+/// list.
+std::vector<RecoveryFailure> fold_failures(const VertexStore& vertices, const std::vector<SurfaceTriangle>& folded);
 
 struct CrossingOptions {
   double floor = 0;

@@ -78,13 +78,15 @@ class FaceRefiner {
     };
   }
 
-  std::vector<AddedVertex> run(bool on_surface_first, bool smooth, const Context& context) {
-    if (on_surface_first) {
-      order_ = FlipOrder::on_surface;
-      enqueue(alive());
-      empty_queue(context);
-      order_ = FlipOrder::bends_first;
-    }
+  /// To be called first, if at all: triangles get their size while they are judged on the surface alone.
+  void begin_on_surface(const Context& context) {
+    order_ = FlipOrder::on_surface;
+    enqueue(alive());
+    empty_queue(context);
+    order_ = FlipOrder::bends_first;
+  }
+
+  std::vector<AddedVertex> run(bool smooth, const Context& context) {
     mesh_.restore(wanted_, changed_);
     enqueue(alive());
     empty_queue(context);
@@ -475,15 +477,18 @@ bool has_even_form(SurfaceKind kind) {
 std::vector<AddedVertex> refine_face(FaceMesh& mesh, FaceId face, const Surface& surface, const SizeField& sizes,
                                      const VertexStore& vertices, bool smooth, const Context& context) {
   FaceRefiner refiner(mesh, face, surface, sizes, vertices);
-  if (!refiner.wraps()) return refiner.run(false, smooth, context);
-  if (has_even_form(surface.kind())) return refiner.run(true, smooth, context);
-  const FaceMesh start = mesh;
-  std::vector<AddedVertex> added = refiner.run(false, smooth, context);
+  if (!refiner.wraps()) return refiner.run(smooth, context);
+  if (has_even_form(surface.kind())) {
+    refiner.begin_on_surface(context);
+    return refiner.run(smooth, context);
+  }
+  FaceMesh other = mesh;
+  std::vector<AddedVertex> added = refiner.run(smooth, context);
   const std::size_t folds = refiner.count_folds();
   if (folds == 0) return added;
-  FaceMesh other = start;
   FaceRefiner again(other, face, surface, sizes, vertices);
-  std::vector<AddedVertex> others = again.run(true, smooth, context);
+  again.begin_on_surface(context);
+  std::vector<AddedVertex> others = again.run(smooth, context);
   if (again.count_folds() >= folds) return added;
   mesh = std::move(other);
   return others;

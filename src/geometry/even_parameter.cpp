@@ -17,7 +17,7 @@ namespace {
 constexpr int kParts = 32;              ///< of the range
 constexpr double kLargestShare = 0.25;  ///< of the length, in one of them
 constexpr double kLongestChord = 0.02;  ///< of the length, of a piece
-constexpr double kLeastStep = 1e-9;     ///< of the range, for either parameter
+constexpr double kLeastStep = 1e-9;     ///< of the range, for the even parameter
 constexpr std::size_t kMostPieces = 2000;
 
 struct Place {

@@ -140,7 +140,10 @@ class BodyMesher {
     if (!body.recovery.failures.empty()) return body.recovery.failures;
     if (const Failures shared = shared_edges(body); !shared.empty()) return shared;
     if (const Failures broken = broken_fans(body); !broken.empty()) return broken;
-    if (const Failures folded = folded_facets(body); !folded.empty()) return folded;
+    // Recovery takes facets that are there in place of missing ones; on a strip much narrower than its borders' chords
+    // are high, these may look away from the surface they are nearest to.
+    if (const auto folded = facets_turned_away(*body.conjoint); !folded.empty())
+      return fold_failures(body.vertices, folded);
 
     clock_.start("classification", 0.5, 0.55);
     body.classified = classify(*body.conjoint);
@@ -169,18 +172,6 @@ class BodyMesher {
         const Vec3 p = body.vertices.position(fault.vertex);
         failures.push_back({{FaceId(f)}, p, 0.5 * sizes_.at(p), describe(fault)});
       }
-    return failures;
-  }
-
-  /// Recovery takes facets that are there in place of missing ones; on a strip much narrower than its borders' chords
-  /// are high, these may look away from the surface they are nearest to.
-  Failures folded_facets(const BodyMesh& body) const {
-    Failures failures;
-    for (const SurfaceTriangle& t : facets_turned_away(*body.conjoint)) {
-      Vec3 centroid;
-      for (const VertexId v : t.vertices) centroid = centroid + (1.0 / 3) * body.vertices.position(v);
-      failures.push_back({{t.face}, centroid, 0.5 * longest_edge(body.vertices, t.vertices), kFoldedFacet});
-    }
     return failures;
   }
 

@@ -46,8 +46,9 @@ struct FaceOutcome {
 };
 
 /// Squared distance from p to the segment ab.
-double point_segment_distance2(Vec3 p, Vec3 a, Vec3 b) {
-  const Vec3 ab = b - a;
+template <class Vec>
+double point_segment_distance2(Vec p, Vec a, Vec b) {
+  const Vec ab = b - a;
   const double length2 = norm2(ab);
   const double t = length2 > 0 ? std::clamp(dot(p - a, ab) / length2, 0.0, 1.0) : 0;
   return norm2(p - (a + t * ab));
@@ -65,19 +66,12 @@ double point_triangle_distance2(Vec3 p, Vec3 a, Vec3 b, Vec3 c) {
   return over ? std::min(sides, height * height / n2) : sides;
 }
 
-double point_segment_distance(Vec2 p, Vec2 a, Vec2 b) {
-  const Vec2 ab = b - a;
-  const double length2 = norm2(ab);
-  const double t = length2 > 0 ? std::clamp(dot(p - a, ab) / length2, 0.0, 1.0) : 0;
-  return norm(p - (a + t * ab));
-}
-
 /// Turns of a closed polygon around a point; empty when the point is too close to tell.
 std::optional<int> winding(const std::vector<Vec2>& polygon, Vec2 p) {
   double angle = 0;
   for (std::size_t i = 0; i < polygon.size(); ++i) {
     const Vec2 a = polygon[i], b = polygon[(i + 1) % polygon.size()];
-    if (point_segment_distance(p, a, b) < kTooClose) return std::nullopt;
+    if (point_segment_distance2(p, a, b) < kTooClose * kTooClose) return std::nullopt;
     angle += std::atan2(cross(a - p, b - p), dot(a - p, b - p));
   }
   return static_cast<int>(std::lround(angle / (2 * std::numbers::pi)));
@@ -117,7 +111,8 @@ class LoopPolygons {
   void append(const EdgeUse& use, double from, double to, int depth) {
     const double middle = 0.5 * (from + to);
     const Vec2 end = at(use, to);
-    if (depth < kDepth && point_segment_distance(at(use, middle), polygon_.back(), end) > kLoopDeviation) {
+    const double off2 = point_segment_distance2(at(use, middle), polygon_.back(), end);
+    if (depth < kDepth && off2 > kLoopDeviation * kLoopDeviation) {
       append(use, from, middle, depth + 1);
       append(use, middle, to, depth + 1);
       return;

@@ -220,15 +220,21 @@ double shortest_edge(const Mesh& mesh) {
   return shortest;
 }
 
+/// Where only the surface mesh matters.
+Options surface_only(double size) {
+  Options options;
+  options.size = size;
+  options.refine_interior = false;
+  options.improve = false;
+  return options;
+}
+
 // Edges between the rims of a spline's patches were split on lines of one parameter, where triangles lay flat on each
 // other.
 TEST(MeshOfAShape, FineTorusOfSplinesHasNoCrossings) {
   const TopoDS_Shape torus = BRepBuilderAPI_NurbsConvert(BRepPrimAPI_MakeTorus(6, 2).Shape());
   for (const double size : {0.5, 0.23}) {
-    Options options;
-    options.size = size;
-    options.refine_interior = false;
-    options.improve = false;
+    const Options options = surface_only(size);
     Context context;
     const Result<MeshOutput> made = mesh(torus, options, context);
     ASSERT_TRUE(made) << made.error().message;
@@ -241,10 +247,7 @@ TEST(MeshOfAShape, FineTorusOfSplinesHasNoCrossings) {
 // Edges wrapped around a spline's surface, which nothing led out of, and triangles crossed.
 TEST(MeshOfAShape, ThinElbowOfSplinesHasNoCrossings) {
   const TopoDS_Shape elbow = BRepBuilderAPI_NurbsConvert(BRepPrimAPI_MakeTorus(10, 0.02, 1).Shape());
-  Options options;
-  options.size = 1;
-  options.refine_interior = false;
-  options.improve = false;
+  const Options options = surface_only(1);
   Context context;
   const Result<MeshOutput> made = mesh(elbow, options, context);
   ASSERT_TRUE(made) << made.error().message;
@@ -284,10 +287,7 @@ TopoDS_Shape star(int rays, double inner, double outer) {
 // The check saw an edge at a few places, here the tips of the rays, and missed triangles between them; and it took the
 // volume of the CAD kernel, which is a quarter off, for right.
 TEST(MeshOfAShape, AnEdgeMayBendMoreOftenThanItIsLookedAt) {
-  Options options;
-  options.size = 0.4;
-  options.refine_interior = false;
-  options.improve = false;
+  const Options options = surface_only(0.4);
   Context context;
   const Result<MeshOutput> made = mesh(star(24, 8, 10), options, context);
   ASSERT_TRUE(made) << made.error().message;
