@@ -38,6 +38,8 @@ constexpr double kUpright = 0.5;
 constexpr double kAligned = 0.7071;
 /// Cosine of the angle between normals at corners from which they disagree.
 constexpr double kAgree = 0.7071;
+/// Cosine of the angle between the normals at an edge's ends, 130 degrees: three elements around have 120.
+constexpr double kTurnsAbout = -0.643;
 /// Working length below which an arc is a point.
 constexpr double kNoLength = 1e-9;
 
@@ -160,6 +162,7 @@ bool apex_improves(const Corner& a, const Corner& b, const Corner& c, const Corn
 /// count.
 bool bent_beside_pole(const Corner& a, const Corner& b, const ChartSurface& on) {
   if (at_pole(a) || at_pole(b)) return bent(a, b);
+  if (turns_about(a, b, on)) return true;
   const Vec3 chord = b.position - a.position;
   if (arc_estimate(a, b) > kWrap * norm(chord) + kNoLength) return true;
   const Vec3 middle = on.surface.value(on.chart.to_uv(0.5 * (a.q + b.q)));
@@ -207,6 +210,10 @@ double arc_estimate(const Corner& a, const Corner& b) {
 
 bool at_pole(const Corner& a) { return norm2(a.normal) == 0; }
 
+bool turns_about(const Corner& a, const Corner& b, const ChartSurface& on) {
+  return on.has_pole && dot(a.normal, b.normal) < kTurnsAbout;
+}
+
 bool bent(const Corner& a, const Corner& b) {
   const Vec3 chord = b.position - a.position;
   const Vec2 d = b.q - a.q;
@@ -222,6 +229,7 @@ bool bent(const Corner& a, const Corner& b) {
 }
 
 bool confirmed_bent(const Corner& a, const Corner& b, const ChartSurface& on) {
+  if (turns_about(a, b, on)) return true;
   if (!bent(a, b)) return false;
   if (at_pole(a) || at_pole(b)) return true;
   const Vec3 chord = b.position - a.position;
@@ -415,7 +423,7 @@ FaceMesh::FlipWanted spatial_criterion(const FaceMesh& mesh, const VertexStore& 
   return [corner, &mesh, &face](NodeId a, NodeId b, NodeId c, NodeId d) {
     corner(NodeId(std::max({a.value(), b.value(), c.value(), d.value()})));  // no resizing below: references stay good
     return flip_improves(corner(a), corner(b), corner(c), corner(d), FlipOrder::upright_first,
-                         {*face.surface, mesh.chart});
+                         {*face.surface, mesh.chart, mesh.has_pole()});
   };
 }
 

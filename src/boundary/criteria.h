@@ -27,6 +27,7 @@ Corner make_corner(const FaceNode& node, Vec3 position, const SurfaceFirst& at, 
 struct ChartSurface {
   const Surface& surface;
   const Chart& chart;
+  bool has_pole = false;  ///< of the face mesh on it
 };
 
 /// Mean of du x dv over a chart triangle, not of unit length: each part of the surface counts by its area in space.
@@ -54,6 +55,10 @@ bool bent(const Corner& a, const Corner& b);
 /// Bent, and the surface between the ends confirms it: at a crease or a jump of speed the derivatives at the ends say
 /// nothing about what is between them.
 bool confirmed_bent(const Corner& a, const Corner& b, const ChartSurface& on);
+
+/// On a face that tapers to a pole, where elements are longer than it is thick: the surface turns so far from a to b
+/// that the chord, however steep, runs through the middle of what the surface lies around.
+bool turns_about(const Corner& a, const Corner& b, const ChartSurface& on);
 
 /// Whether a curve whose middle is at `offset` from the middle of its chord is far from being its picture.
 bool off_chord(Vec3 offset, Vec3 chord);

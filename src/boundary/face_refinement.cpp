@@ -28,6 +28,7 @@ constexpr double kRadius = 0.72;        ///< largest circumradius over size
 constexpr double kSpacing = 0.5;        ///< least distance of a new point to others over size
 constexpr double kSpacingFloor = 0.02;  ///< the same for points that cure a fold
 constexpr double kBentFloor = 0.05;     ///< least distance of points that cure bent edges, over size and usual segment
+constexpr double kReachFloor = 2e-3;    ///< least distance that geometry can force points to, over size
 constexpr double kSineSmallAngle = 0.342;  ///< of 20 degrees
 constexpr double kLongEdge = 1.4;          ///< an edge over size that is split when no centre can be inserted
 constexpr double kEncroachHeight = 0.45;   ///< distance over size within which a diametral sphere counts
@@ -37,8 +38,9 @@ constexpr double kLeastHeight = 0.6;  ///< of a new triangle over the front, ove
 constexpr double kNoFarther = 1.02;   ///< a centre's distance over that height up to which it is as good
 constexpr double kOffHeight = 0.05;   ///< of a point at the front, over the height, that asks for another try
 constexpr double kWraps = 1.1;        ///< an arc over its chord, just below that of a quarter turn
+constexpr double kWideFan = 1.75;     ///< angle around a pole, 100 degrees, over which a triangle there is split
 
-enum class Need : std::uint8_t { none, shape, fold, size, bend };
+enum class Need : std::uint8_t { none, shape, fan, fold, size, bend };
 
 struct Verdict {
   Need need = Need::none;
@@ -74,7 +76,7 @@ class FaceRefiner {
     }
     measure_segments();
     wanted_ = [this](NodeId a, NodeId b, NodeId c, NodeId d) {
-      return flip_improves(corner(a), corner(b), corner(c), corner(d), order_, {surface_, mesh_.chart});
+      return flip_improves(corner(a), corner(b), corner(c), corner(d), order_, on());
     };
   }
 
@@ -102,10 +104,8 @@ class FaceRefiner {
     return std::move(added_);
   }
 
-  /// Whether some edge wraps around the surface, so that its ends are closer in space than on it. A pole has its own
-  /// ways.
+  /// Whether some edge wraps around the surface, so that its ends are closer in space than on it.
   bool wraps() const {
-    if (std::any_of(corners_.begin(), corners_.end(), at_pole)) return false;
     for (const TriangleId id : alive()) {
       const FaceTriangle& t = mesh_.triangle(id);
       for (std::size_t i = 0; i < 3; ++i) {
@@ -122,7 +122,7 @@ class FaceRefiner {
     for (const TriangleId id : alive()) {
       const FaceTriangle& t = mesh_.triangle(id);
       const Corner &a = corner(t.node[0]), &b = corner(t.node[1]), &c = corner(t.node[2]);
-      if (!degenerate(a, b, c) && alignment(a, b, c, {surface_, mesh_.chart}) < kFolded) ++folds;
+      if (!degenerate(a, b, c) && alignment(a, b, c, on()) < kFolded) ++folds;
     }
     return folds;
   }
@@ -147,12 +147,13 @@ class FaceRefiner {
 
   void move_nodes(const Context& context) {
     const std::size_t first = corners_.size() - added_.size();
-    smooth_face(mesh_, NodeId(first), corners_, {surface_, mesh_.chart}, wanted_, context);
+    smooth_face(mesh_, NodeId(first), corners_, on(), wanted_, context);
     for (std::size_t k = 0; k < added_.size(); ++k)
       added_[k] = {corners_[first + k].position, mesh_.chart.to_uv(corners_[first + k].q)};
   }
 
   const Corner& corner(NodeId n) const { return corners_[n.value()]; }
+  ChartSurface on() const { return {surface_, mesh_.chart, mesh_.has_pole()}; }
 
   std::vector<TriangleId> alive() const {
     std::vector<TriangleId> all;
@@ -260,15 +261,46 @@ class FaceRefiner {
     if (radius > kRadius * wanted && longest > kSpacing * wanted)
       return {Need::size, 1 + std::min(radius / wanted, 500.0)};
     // The normal turns with the radius, so a fold that is left within the size is cured at its radius or not at all.
-    if (radius > 2 * kSpacingFloor * wanted && folded(a, b, c, {surface_, mesh_.chart}))
+    if (radius > 2 * kSpacingFloor * wanted && folded(a, b, c, on()))
       return {Need::fold, std::min(0.9, radius / wanted)};
+    if (const auto fan = fan_of(t); fan && fan->turn > kWideFan) return {Need::fan, 0.02 * fan->turn};
     if (radius > kSpacing * wanted && shortest < 2 * kSineSmallAngle * radius)
       return {Need::shape, 0.01 * radius / wanted};
     return {};
   }
 
+  /// Of a triangle with a corner at a pole: the middle of its edge across, and its angle around the pole.
+  struct Fan {
+    FacePoint middle;
+    double turn;
+  };
+
+  std::optional<Fan> fan_of(const FaceTriangle& t) const {
+    std::size_t at = 0;
+    while (at < 3 && !at_pole(corner(t.node[at]))) ++at;
+    if (at == 3) return std::nullopt;
+    const Vec3 pole = corner(t.node[at]).position;
+    const Corner &a = corner(t.node[(at + 1) % 3]), &b = corner(t.node[(at + 2) % 3]);
+    if (t.use[at] != -1 || at_pole(a) || at_pole(b)) return std::nullopt;
+    const FacePoint middle = evaluate(middle_of(a, b));
+    // The direction around the pole: on a sharp cone the rays turn by little, on a flat one the normals.
+    const auto around = [&](Vec3 normal, Vec3 position) { return cross(normal, position - pole); };
+    const auto angle = [](Vec3 u, Vec3 v) { return std::atan2(norm(cross(u, v)), dot(u, v)); };
+    const Vec3 half_way = around(unit_normal(middle.at), middle.at.value);
+    return Fan{middle, angle(around(a.normal, a.position), half_way) + angle(half_way, around(b.normal, b.position))};
+  }
+
+  /// Two triangles around a pole for one that spans too much of the turn. On a sharp cone they are thinner than the
+  /// size, but without them it has no volume at its tip. Each has half of the angle, so this ends.
+  bool split_fan(TriangleId id) {
+    const auto fan = fan_of(mesh_.triangle(id));
+    return fan && fan->turn > kWideFan && insert(fan->middle, id, Need::fan);
+  }
+
   /// Edges to a pole are flipped when they are askew; points on them would only come nearer to the pole.
-  static bool must_split(const Corner& a, const Corner& b) { return !at_pole(a) && !at_pole(b) && bent(a, b); }
+  bool must_split(const Corner& a, const Corner& b) const {
+    return !at_pole(a) && !at_pole(b) && (bent(a, b) || turns_about(a, b, on()));
+  }
 
   /// False: nothing was wrong, or nothing could be done.
   bool refine(TriangleId id) {
@@ -278,6 +310,17 @@ class FaceRefiner {
       verdict = judge(id, false);
     }
     if (verdict.need == Need::none) return false;
+    if (verdict.need != Need::fan && place_point(id, verdict.need)) return true;
+    if (verdict.need == Need::size && mesh_.has_pole() && is_folded(id) && place_point(id, Need::fold)) return true;
+    return split_fan(id);
+  }
+
+  bool is_folded(TriangleId id) const {
+    const auto& n = mesh_.triangle(id).node;
+    return folded(corner(n[0]), corner(n[1]), corner(n[2]), on());
+  }
+
+  bool place_point(TriangleId id, Need need) {
     const FaceTriangle t = mesh_.triangle(id);
     std::array<Vec2, 3> q;
     std::array<Vec3, 3> p;
@@ -289,12 +332,12 @@ class FaceRefiner {
     if (!centre) {
       if (const auto other = metric_centre(surface_, mesh_.chart, q)) centre = evaluate(*other);
     }
-    if (centre && verdict.need == Need::size) {
+    if (centre && need == Need::size) {
       const auto at_front = point_at_front(t, *centre);
-      if (at_front && insert(*at_front, id, verdict.need)) return true;
+      if (at_front && insert(*at_front, id, need)) return true;
     }
-    if (centre && insert(*centre, id, verdict.need)) return true;
-    return verdict.need != Need::shape && split_longest(id, verdict.need);
+    if (centre && insert(*centre, id, need)) return true;
+    return need != Need::shape && split_longest(id, need);
   }
 
   /// The point over the front's edge, towards the centre, at the distance of one size from the edge's ends; nothing
@@ -340,7 +383,7 @@ class FaceRefiner {
     const FacePoint middle = evaluate(middle_of(a, b));
     const Vec3 chord = b.position - a.position;
     if (!off_chord(middle.at.value - 0.5 * (a.position + b.position), chord)) {
-      if (arc_estimate(a, b) < 2 * norm(chord)) return false;
+      if (arc_estimate(a, b) < 2 * norm(chord) && !turns_about(a, b, on())) return false;
     }
     return insert(middle, id, Need::bend);
   }
@@ -350,33 +393,46 @@ class FaceRefiner {
     return {snap(middle.x), snap(middle.y)};
   }
 
-  /// A point at the middle of the longest edge that may be split, if it is too long or is what is wrong.
+  /// A point at the middle of the longest edge that may be split, if it is too long or is what is wrong. Of a fold the
+  /// other edges are tried, too: next to the longest one's middle there may be the third corner.
   bool split_longest(TriangleId id, Need need) {
     const FaceTriangle t = mesh_.triangle(id);
-    double best = 0;
-    std::size_t at = 3;
-    for (std::size_t i = 0; i < 3; ++i) {
+    std::array<std::size_t, 3> order{0, 1, 2};
+    const auto length = [&](std::size_t i) {
+      return t.use[i] != -1 ? 0 : distance(corner(t.node[(i + 1) % 3]).position, corner(t.node[(i + 2) % 3]).position);
+    };
+    std::sort(order.begin(), order.end(), [&](std::size_t i, std::size_t j) { return length(i) > length(j); });
+    if (need == Need::size && length(order[0]) < kLongEdge * size_of(t)) return false;
+    for (const std::size_t i : order) {
       if (t.use[i] != -1) continue;
-      const double length = distance(corner(t.node[(i + 1) % 3]).position, corner(t.node[(i + 2) % 3]).position);
-      if (length > best) {
-        best = length;
-        at = i;
-      }
+      if (insert(evaluate(middle_of(corner(t.node[(i + 1) % 3]), corner(t.node[(i + 2) % 3]))), id, need)) return true;
+      if (need != Need::fold || !mesh_.has_pole()) return false;
     }
-    if (at == 3 || (need == Need::size && best < kLongEdge * size_of(t))) return false;
-    return insert(evaluate(middle_of(corner(t.node[(at + 1) % 3]), corner(t.node[(at + 2) % 3]))), id, need);
+    return false;
   }
 
-  /// Least distance to other nodes: the cure of a fold or a bent edge may be as close as the geometry itself forces it
-  /// to.
-  double spacing(const FaceTriangle& t, Need need, double size) const {
+  /// What counts as the size for a new point: the cure of a fold, of an edge that turns about or of a wide fan may be
+  /// as close to others as the geometry itself forces it to.
+  double reach(const FaceTriangle& t, Need need, double size, const FacePoint& point) const {
+    const Corner &a = corner(t.node[0]), &b = corner(t.node[1]), &c = corner(t.node[2]);
+    if (need == Need::fan)
+      return std::min({distance(point.at.value, a.position), distance(point.at.value, b.position),
+                       distance(point.at.value, c.position)});
+    const bool turns = turns_about(a, b, on()) || turns_about(b, c, on()) || turns_about(c, a, on());
+    if (!(need == Need::bend && turns) && !(need == Need::fold && mesh_.has_pole())) return size;
+    const double curvature = surface_.curvatures(mesh_.chart.to_uv(point.q)).x;
+    return std::clamp(1 / curvature, kReachFloor * size, size);
+  }
+
+  /// Least distance to other nodes.
+  double spacing(const FaceTriangle& t, Need need, double reach, double size) const {
     const Corner &a = corner(t.node[0]), &b = corner(t.node[1]), &c = corner(t.node[2]);
     if (need == Need::bend) {
       const double longest = std::max({arc_estimate(a, b), arc_estimate(b, c), arc_estimate(c, a)});
-      return std::min(kSpacing * size, std::max(0.1 * longest, kBentFloor * std::min(size, usual_segment_)));
+      return std::min(kSpacing * reach, std::max(0.1 * longest, kBentFloor * std::min(size, usual_segment_)));
     }
-    if (need == Need::fold) return kSpacing * std::min(size, circumradius(a.position, b.position, c.position));
-    return kSpacing * size;
+    if (need == Need::fold) return kSpacing * std::min(reach, circumradius(a.position, b.position, c.position));
+    return kSpacing * reach;
   }
 
   bool insert(const FacePoint& point, TriangleId from, Need need) {
@@ -385,7 +441,9 @@ class FaceRefiner {
     if (!holder) return false;
     const Vec3 position = snap(point.at.value);
     const double size = sizes_.at_face(face_, position);
-    if (crowded(point, *holder, from, spacing(mesh_.triangle(from), need, size), size)) return false;
+    const FaceTriangle& cured = mesh_.triangle(from);
+    const double near = reach(cured, need, size, point);
+    if (crowded(point, *holder, from, spacing(cured, need, near, size), near)) return false;
     if (mesh_.judge_insert(point.q, *holder) != PlanarRefusal::none) return false;
     const VertexId vertex(static_cast<std::uint32_t>(kLocalVertices + added_.size()));
     const FaceNode node{vertex, point.q};
@@ -478,7 +536,7 @@ std::vector<AddedVertex> refine_face(FaceMesh& mesh, FaceId face, const Surface&
                                      const VertexStore& vertices, bool smooth, const Context& context) {
   FaceRefiner refiner(mesh, face, surface, sizes, vertices);
   if (!refiner.wraps()) return refiner.run(smooth, context);
-  if (has_even_form(surface.kind())) {
+  if (has_even_form(surface.kind()) && !mesh.has_pole()) {
     refiner.begin_on_surface(context);
     return refiner.run(smooth, context);
   }

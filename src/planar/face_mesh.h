@@ -90,6 +90,8 @@ class FaceMesh {
   std::size_t triangle_slots() const { return triangles_.size(); }
   std::size_t triangle_count() const;  ///< alive
   std::array<VertexId, 3> vertices(TriangleId t) const;
+  /// Whether an edge of the boundary goes along a pole.
+  bool has_pole() const { return !poles_.empty(); }
   /// The nodes that carry a vertex (one, or several for seams and poles).
   std::vector<NodeId> nodes_of(VertexId v) const;
   /// A triangle at a node; empty if the node is in none.

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "boundary/surface_triangles.h"
 #include "geometry/frame.h"
@@ -69,6 +70,42 @@ TEST(FaceRefinement, LeavesValidMeshesWithNodesOnTheirSurface) {
         }
       }
       EXPECT_GT(inside, 0U);
+    }
+  }
+}
+
+/// Unit normal of a cone around z; zero at its apex, which is over the origin.
+Vec3 outward(Vec3 p, double half_angle) {
+  const double r = std::hypot(p.x, p.y);
+  if (r < 1e-9) return {};
+  return {std::cos(half_angle) * p.x / r, std::cos(half_angle) * p.y / r, std::sin(half_angle)};
+}
+
+// Near its tip a needle is thinner than the least size: triangles that span half a turn would cut through its middle.
+TEST(FaceRefinement, GoesAroundTheTipOfANeedleInSteps) {
+  for (const double half_angle : {0.01, 0.03, 0.1, 0.3}) {
+    for (const double size : {0.3, 0.5, 0.9}) {
+      BoundaryRunOptions options{size, 12};
+      options.until = Until::faces;
+      const Model model = make_cone(2 * std::tan(half_angle), 0, 2);
+      const auto run = run_boundary(model, options);
+      ASSERT_FALSE(HasFailure());
+      const FaceId side(1);
+      const double sign = model.faces[side].reversed ? -1 : 1;
+      double farthest = 0, worst = 1;
+      for (const SurfaceTriangle& t : surface_triangles(run->boundary.faces[side], side)) {
+        std::array<Vec3, 3> p, n;
+        for (std::size_t i = 0; i < 3; ++i) {
+          p[i] = model.frame.to_cad(run->vertices.position(t.vertices[i]));
+          n[i] = outward(p[i], half_angle);
+        }
+        for (std::size_t i = 0; i < 3; ++i)
+          farthest = std::max(farthest, std::acos(std::clamp(dot(n[i], n[(i + 1) % 3]), -1.0, 1.0)));
+        const Vec3 normal = sign * cross(p[1] - p[0], p[2] - p[0]);
+        worst = std::min(worst, dot(normal, outward((1.0 / 3) * (p[0] + p[1] + p[2]), half_angle)) / norm(normal));
+      }
+      EXPECT_LT(farthest, 2.6) << half_angle << " " << size;
+      EXPECT_GT(worst, 0.1) << half_angle << " " << size;
     }
   }
 }
