@@ -52,7 +52,7 @@ std::vector<char> suppressed_edges(const CadBody& body);
 /// Brings `suppressed` into its order.
 void sort_suppressed(CadBody& body);
 
-/// Signed volume within the faces of a shape, each integrated adaptively.
+/// Signed volume within the faces of a shape, by those of the kernel's rules that agree best.
 double volume_of(const TopoDS_Shape& shape);
 
 /// Numbers all sub-shapes 1..n, without names.

@@ -19,7 +19,9 @@
 #include <Geom_SphericalSurface.hxx>
 #include <Geom_ToroidalSurface.hxx>
 #include <Geom_TrimmedCurve.hxx>
+#include <Standard_Failure.hxx>
 #include <cmath>
+#include <limits>
 
 #include "geometry/analytic.h"
 
@@ -78,6 +80,19 @@ struct Range {
   }
 };
 
+constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+constexpr Vec3 kNowhere{kNan, kNan, kNan};
+
+/// The kernel throws where an offset has no place, or no derivative, for what it is offset from has no normal there.
+template <typename Evaluate, typename Otherwise>
+auto where_defined(Evaluate evaluate, Otherwise otherwise) {
+  try {
+    return evaluate();
+  } catch (const Standard_Failure&) {
+    return otherwise();
+  }
+}
+
 class OcctSurface final : public Surface {
  public:
   OcctSurface(const Handle(Geom_Surface) & surface, const Frame& frame)
@@ -109,27 +124,35 @@ class OcctSurface final : public Surface {
 
   SurfaceKind kind() const override { return kind_; }
   Vec3 value(Vec2 uv) const override {
-    gp_Pnt p;
-    adaptor_.D0(u_.inside(uv.x), v_.inside(uv.y), p);
-    return frame_.to_working(to_vec(p.XYZ()));
+    return where_defined([&] { return at(adaptor_.Value(u_.inside(uv.x), v_.inside(uv.y))); }, [] { return kNowhere; });
   }
   SurfaceFirst first(Vec2 uv) const override {
-    gp_Pnt p;
-    gp_Vec du, dv;
-    adaptor_.D1(u_.inside(uv.x), v_.inside(uv.y), p, du, dv);
-    return {frame_.to_working(to_vec(p.XYZ())), scaled(du), scaled(dv)};
+    const auto evaluate = [&]() -> SurfaceFirst {
+      gp_Pnt p;
+      gp_Vec du, dv;
+      adaptor_.D1(u_.inside(uv.x), v_.inside(uv.y), p, du, dv);
+      return {at(p), scaled(du), scaled(dv)};
+    };
+    return where_defined(evaluate, [&] { return SurfaceFirst{value(uv), {}, {}}; });
   }
   SurfaceSecond second(Vec2 uv) const override {
-    gp_Pnt p;
-    gp_Vec du, dv, duu, dvv, duv;
-    adaptor_.D2(u_.inside(uv.x), v_.inside(uv.y), p, du, dv, duu, dvv, duv);
-    return {frame_.to_working(to_vec(p.XYZ())), scaled(du), scaled(dv), scaled(duu), scaled(duv), scaled(dvv)};
+    const auto evaluate = [&]() -> SurfaceSecond {
+      gp_Pnt p;
+      gp_Vec du, dv, duu, dvv, duv;
+      adaptor_.D2(u_.inside(uv.x), v_.inside(uv.y), p, du, dv, duu, dvv, duv);
+      return {at(p), scaled(du), scaled(dv), scaled(duu), scaled(duv), scaled(dvv)};
+    };
+    return where_defined(evaluate, [&] {
+      const SurfaceFirst lower = first(uv);
+      return SurfaceSecond{lower.value, lower.du, lower.dv, {}, {}, {}};
+    });
   }
   double period_u() const override { return u_.period; }
   double period_v() const override { return v_.period; }
   std::unique_ptr<Surface> clone() const override { return std::make_unique<OcctSurface>(*this); }
 
  private:
+  Vec3 at(const gp_Pnt& p) const { return frame_.to_working(to_vec(p.XYZ())); }
   Vec3 scaled(const gp_Vec& v) const { return frame_.scale * vec(v); }
   Handle(Geom_Surface) surface_;
   GeomAdaptor_Surface adaptor_;
@@ -148,16 +171,22 @@ class OcctCurve final : public Curve {
   CurveKind kind() const override {
     return adaptor_.GetType() == GeomAbs_BSplineCurve ? CurveKind::bspline : CurveKind::other;
   }
-  Vec3 value(double t) const override { return frame_.to_working(to_vec(adaptor_.Value(t).XYZ())); }
+  Vec3 value(double t) const override {
+    return where_defined([&] { return at(adaptor_.Value(t)); }, [] { return kNowhere; });
+  }
   CurveSecond second(double t) const override {
-    gp_Pnt p;
-    gp_Vec d, dd;
-    adaptor_.D2(t, p, d, dd);
-    return {frame_.to_working(to_vec(p.XYZ())), frame_.scale * vec(d), frame_.scale * vec(dd)};
+    const auto evaluate = [&]() -> CurveSecond {
+      gp_Pnt p;
+      gp_Vec d, dd;
+      adaptor_.D2(t, p, d, dd);
+      return {at(p), frame_.scale * vec(d), frame_.scale * vec(dd)};
+    };
+    return where_defined(evaluate, [&] { return CurveSecond{value(t), {}, {}}; });
   }
   std::unique_ptr<Curve> clone() const override { return std::make_unique<OcctCurve>(*this); }
 
  private:
+  Vec3 at(const gp_Pnt& p) const { return frame_.to_working(to_vec(p.XYZ())); }
   Handle(Geom_Curve) curve_;
   GeomAdaptor_Curve adaptor_;
   Frame frame_;

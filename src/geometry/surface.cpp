@@ -91,6 +91,7 @@ Vec3 Surface::normal(Vec2 uv) const {
 std::optional<Vec2> Surface::project(Vec3 point, Vec2 guess) const {
   Vec2 uv = guess;
   SurfaceSecond s = second(uv);
+  if (!finite(s.value)) return std::nullopt;
   double damping = 0, moved = std::numeric_limits<double>::infinity();
   for (int step = 0; step < kProjectionSteps; ++step) {
     const Vec3 r = s.value - point;

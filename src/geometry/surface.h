@@ -23,7 +23,8 @@ struct SurfaceSecond {
   Vec3 value, du, dv, duu, duv, dvv;
 };
 
-/// A parametric surface. Values and derivatives are in working coordinates per unit of parameter.
+/// A parametric surface. Values and derivatives are in working coordinates per unit of parameter. Where an offset
+/// surface is not defined its value is no number; derivatives that are not defined are zero, as at a pole.
 class Surface {
  public:
   virtual ~Surface() = default;
@@ -60,7 +61,7 @@ struct CurveSecond {
   Vec3 value, dt, dtt;
 };
 
-/// A curve in space.
+/// A curve in space. What is not defined is as on surfaces.
 class Curve {
  public:
   virtual ~Curve() = default;

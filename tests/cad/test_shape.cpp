@@ -13,28 +13,40 @@
 #include <BRepPrimAPI_MakeCone.hxx>
 #include <BRepPrimAPI_MakeCylinder.hxx>
 #include <BRepPrimAPI_MakeHalfSpace.hxx>
+#include <BRepPrimAPI_MakePrism.hxx>
 #include <BRepPrimAPI_MakeRevol.hxx>
 #include <BRepPrimAPI_MakeSphere.hxx>
 #include <BRepPrimAPI_MakeTorus.hxx>
 #include <BRep_Builder.hxx>
 #include <BRep_Tool.hxx>
 #include <GProp_GProps.hxx>
+#include <GeomAPI_Interpolate.hxx>
+#include <GeomConvert.hxx>
+#include <Geom_BSplineCurve.hxx>
+#include <Geom_ConicalSurface.hxx>
+#include <Geom_OffsetSurface.hxx>
 #include <Geom_Parabola.hxx>
+#include <Geom_RectangularTrimmedSurface.hxx>
 #include <Geom_Surface.hxx>
 #include <ShapeBuild_ReShape.hxx>
 #include <ShapeCustom.hxx>
+#include <Standard_Failure.hxx>
+#include <TColgp_HArray1OfPnt.hxx>
 #include <TopExp.hxx>
 #include <TopExp_Explorer.hxx>
 #include <TopTools_IndexedMapOfShape.hxx>
 #include <TopoDS.hxx>
 #include <TopoDS_Compound.hxx>
+#include <TopoDS_Face.hxx>
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 #include <random>
 #include <set>
 
 #include "cad/cells.h"
+#include "cad/occt_geometry.h"
 #include "cad/shape.h"
 #include "shapes.h"
 
@@ -140,6 +152,51 @@ TEST(ModelFromShape, VolumesAreExactWhateverTheSurfaces) {
     ASSERT_TRUE(model.ok()) << model.error().message;
     EXPECT_NEAR(test::total_volume(model.value()), kPi / 2 * 40 * (36 + 324), 1);
   }
+}
+
+/// Closed, around the origin, through five points.
+Handle(Geom_BSplineCurve) make_star() {
+  const Handle(TColgp_HArray1OfPnt) points = new TColgp_HArray1OfPnt(1, 5);
+  const std::array radii{0.4, 0.9, 0.5, 1.0, 0.6};
+  for (int i = 0; i < 5; ++i) {
+    const double angle = 2 * kPi * i / 5, radius = radii[static_cast<std::size_t>(i)];
+    points->SetValue(i + 1, gp_Pnt(radius * std::cos(angle), radius * std::sin(angle), 0));
+  }
+  GeomAPI_Interpolate spline(points, true, 1e-6);
+  spline.Perform();
+  return spline.Curve();
+}
+
+// The kernel's adaptive rule is off by a tenth.
+TEST(ModelFromShape, VolumesOfPrismsOnSplinesAreExact) {
+  const Handle(Geom_BSplineCurve) star = make_star();
+  double twice_area = 0;
+  constexpr int kSteps = 100000;
+  const double step = (star->LastParameter() - star->FirstParameter()) / kSteps;
+  for (int i = 0; i < kSteps; ++i) {
+    const gp_Pnt p = star->Value(star->FirstParameter() + i * step),
+                 q = star->Value(star->FirstParameter() + (i + 1) * step);
+    twice_area += p.X() * q.Y() - p.Y() * q.X();
+  }
+  const TopoDS_Face base =
+      BRepBuilderAPI_MakeFace(BRepBuilderAPI_MakeWire(BRepBuilderAPI_MakeEdge(star)).Wire()).Face();
+  auto model = convert(BRepPrimAPI_MakePrism(base, gp_Vec(0, 0, 2)).Shape());
+  ASSERT_TRUE(model.ok()) << model.error().message;
+  EXPECT_NEAR(test::total_volume(model.value()), twice_area, 1e-4 * twice_area);
+}
+
+// A projection on its way may come to where a spline's normal overflows; the kernel throws there.
+TEST(MakeSurface, AnOffsetThatIsNotDefinedIsNoNumber) {
+  const Handle(Geom_Surface) splines = GeomConvert::SurfaceToBSplineSurface(
+      new Geom_RectangularTrimmedSurface(new Geom_ConicalSurface(gp_Ax3(), 0.4, 1), 0.0, 2.0, 0.0, 1.0));
+  const Handle(Geom_Surface) offset = new Geom_OffsetSurface(splines, 0.1);
+  const Vec2 far{-1e6, 0.5};
+  EXPECT_THROW(offset->Value(far.x, far.y), Standard_Failure);
+  const auto surface = make_surface(offset, Frame{});
+  EXPECT_FALSE(finite(surface->value(far)));
+  EXPECT_FALSE(finite(surface->first(far).value));
+  EXPECT_FALSE(finite(surface->second(far).value));
+  EXPECT_FALSE(surface->project({1, 1, 1}, far));
 }
 
 /// The outward normals, integrated over the trimmed faces, give each solid's volume: orientation and sides are right.
