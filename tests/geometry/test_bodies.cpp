@@ -1,6 +1,8 @@
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <memory>
 
 #include "geometry/check.h"
 #include "support/bodies.h"
@@ -37,6 +39,37 @@ TEST(Bodies, AreSound) {
       ADD_FAILURE() << body.name << ": " << name(fault.kind) << ", " << fault.entity << " " << fault.what << " "
                     << fault.amount;
     }
+  }
+}
+
+/// A line in the parameter plane, stretched along u.
+class Stretched final : public ParameterCurve {
+ public:
+  Stretched(std::shared_ptr<const ParameterCurve> curve, double factor) : curve_(std::move(curve)), factor_(factor) {}
+  Vec2 value(double t) const override { return {factor_ * curve_->value(t).x, curve_->value(t).y}; }
+  std::unique_ptr<ParameterCurve> clone() const override { return std::make_unique<Stretched>(curve_, factor_); }
+
+ private:
+  std::shared_ptr<const ParameterCurve> curve_;
+  double factor_;
+};
+
+bool covers_twice(const Model& model) {
+  const std::vector<ModelFault> faults = check_model(model);
+  return std::any_of(faults.begin(), faults.end(),
+                     [](const ModelFault& f) { return f.kind == ModelFault::Kind::crosses_itself && f.where; });
+}
+
+TEST(Bodies, AFaceBeyondAFullTurnCoversItselfTwice) {
+  for (const double turns : {0.8, 1.0, 1.2}) {
+    Model model = test::make_cylinder(2, 5);
+    for (ModelFace& face : model.faces) {
+      if (face.surface->kind() != SurfaceKind::cylinder) continue;
+      for (Loop& loop : face.loops)
+        for (EdgeUse& use : loop.uses) use.curve = std::make_shared<Stretched>(use.curve, turns);
+      face.high.x *= turns;
+    }
+    EXPECT_EQ(covers_twice(model), turns > 1) << turns;
   }
 }
 
