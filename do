@@ -60,7 +60,7 @@ sanitized() {
   configure_and_build asan
   say "Tests under the sanitizers"
   # Unit tests: what spawns processes (command line, helper process, package) runs in the release build only.
-  run_tests asan --exclude-regex '^(command_line|package|gates|gmsh_reads|meshio_reads)|Isolat|Helper|Memory'
+  run_tests asan --exclude-regex '^(command_line|package|gates|random_bodies|gmsh_reads|meshio_reads)|Isolat|Helper|Memory'
 }
 
 test_all() {
