@@ -49,6 +49,8 @@ constexpr int kRoundsThrough = 6;
 
 // Folds that are reported, evenly spread over the list.
 constexpr std::size_t kMostFolds = 200;
+// Of a folded facet's longest edge, that the outer loop is asked for.
+constexpr double kLeastShare = 0.05;
 
 // A facet or segment that is no farther lies on its face or curve.
 constexpr double kFlush = 8 * kGrid;
@@ -331,8 +333,7 @@ class CrossingCure {
     if (faces_cross()) return;
     std::vector<SurfaceTriangle> folded;
     for (const std::uint32_t i : folds_) folded.push_back(triangles_[i]);
-    for (RecoveryFailure& failure : fold_failures(conjoint_.vertices(), folded))
-      result_.failures.push_back(std::move(failure));
+    for (RecoveryFailure& failure : fold_failures(conjoint_, folded)) result_.failures.push_back(std::move(failure));
   }
 
   void report(std::uint32_t i, std::uint32_t j) {
@@ -375,14 +376,22 @@ class CrossingCure {
 
 }  // namespace
 
-std::vector<RecoveryFailure> fold_failures(const VertexStore& vertices, const std::vector<SurfaceTriangle>& folded) {
+std::vector<RecoveryFailure> fold_failures(const Conjoint& conjoint, const std::vector<SurfaceTriangle>& folded) {
+  const auto size_of = [&](const SurfaceTriangle& t) {
+    const FaceMesh& mesh = conjoint.boundary().faces[t.face];
+    Vec2 middle{};
+    for (const NodeId n : mesh.triangle(t.triangle).node) middle = middle + (1.0 / 3) * mesh.node(n).q;
+    const double curvature = conjoint.model().faces[t.face].surface->curvatures(mesh.chart.to_uv(middle)).x;
+    const double longest = longest_edge(conjoint.vertices(), t.vertices);
+    return std::clamp(1 / curvature, kLeastShare * longest, 0.5 * longest);
+  };
   std::vector<RecoveryFailure> failures;
   const std::size_t count = std::min(folded.size(), kMostFolds);
   for (std::size_t k = 0; k < count; ++k) {
     const SurfaceTriangle& t = folded[k * folded.size() / count];
     failures.push_back({{t.face},
-                        centroid(vertices, t),
-                        0.5 * longest_edge(vertices, t.vertices),
+                        centroid(conjoint.vertices(), t),
+                        size_of(t),
                         "a facet of the surface mesh is folded against its face"});
   }
   return failures;

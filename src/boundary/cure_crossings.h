@@ -25,10 +25,10 @@ struct RecoveryFailure {
   bool crossing = false;  ///< facets of the two faces cross, whatever their size
 };
 
-/// Of facets that are folded against their faces: half their longest edges would do. One place of two faces that cross
-/// is as good as another, but each fold has a cause of its own; of very many some are told, evenly spread over the
-/// list.
-std::vector<RecoveryFailure> fold_failures(const VertexStore& vertices, const std::vector<SurfaceTriangle>& folded);
+/// Of facets that are folded against their faces: half their longest edges would do, or the radius that the face is
+/// bent by, down to a twentieth of them. One place of two faces that cross is as good as another, but each fold has a
+/// cause of its own; of very many some are told, evenly spread over the list.
+std::vector<RecoveryFailure> fold_failures(const Conjoint& conjoint, const std::vector<SurfaceTriangle>& folded);
 
 struct CrossingOptions {
   double floor = 0;

@@ -1,5 +1,6 @@
 // Coarse meshes take milliseconds, so a failure is answered by meshing again with a smaller size where it happened,
-// rather than by ever more desperate local measures. Halving at most six times bounds it.
+// rather than by ever more desperate local measures. Halving at most six times bounds it. Halving over the whole face
+// at once was rejected as the first answer: most failures are at one place.
 #include "pipeline/body_mesher.h"
 
 #include <fmt/format.h>
@@ -17,6 +18,9 @@
 namespace curvetet {
 
 namespace {
+
+constexpr int kPatience = 3;        ///< rounds that ask for smaller sizes at single places
+constexpr double kBendShare = 1.2;  ///< size over radius: five elements around
 
 class BodyMesher {
  public:
@@ -38,7 +42,9 @@ class BodyMesher {
       if (result.failures.empty() || is_last_round() || hopeless(result.failures)) return result;
       for (const RecoveryFailure& f : result.failures) log(f);
       for (FaceId f : named(result.failures)) ++result.restarts[f].tried;
-      loop_.asked.push_back(sources(result.failures));
+      std::vector<SizeSource> more = sources(result.failures);
+      if (loop_.round() >= kPatience) add_bends(*result.mesh, named(result.failures), more);
+      loop_.asked.push_back(std::move(more));
       sizes_.add(loop_.asked.back());
     }
   }
@@ -85,6 +91,29 @@ class BodyMesher {
       more.push_back(s);
     }
     return more;
+  }
+
+  /// Where rounds have not helped, each tells of other places of the same face: all its facets that are longer than
+  /// twice the radius it is bent by there are at fault.
+  void add_bends(const BodyMesh& body, const std::set<FaceId>& faces, std::vector<SizeSource>& more) const {
+    for (const FaceId f : faces) {
+      const FaceMesh& mesh = body.boundary.faces[f];
+      const Surface& surface = *model_.faces[f].surface;
+      for (std::size_t k = 0; k < mesh.triangle_slots(); ++k) {
+        const FaceTriangle& t = mesh.triangle(TriangleId(k));
+        if (!t.alive()) continue;
+        const Vec2 uv =
+            mesh.chart.to_uv((1.0 / 3) * (mesh.node(t.node[0]).q + mesh.node(t.node[1]).q + mesh.node(t.node[2]).q));
+        const double radius = 1 / surface.curvatures(uv).x;
+        SizeSource s;
+        s.where = surface.value(uv);
+        if (!finite(s.where) || longest_edge(body.vertices, mesh.vertices(TriangleId(k))) <= 2 * radius) continue;
+        s.size = std::max(kBendShare * radius, settings_.floor);
+        s.reason = SizeReason::outer_loop;
+        s.face = f;
+        more.push_back(s);
+      }
+    }
   }
 
   Result<Failures> attempt(BodyMesh& body) {
@@ -143,7 +172,7 @@ class BodyMesher {
     // Recovery takes facets that are there in place of missing ones; on a strip much narrower than its borders' chords
     // are high, these may look away from the surface they are nearest to.
     if (const auto folded = facets_turned_away(*body.conjoint); !folded.empty())
-      return fold_failures(body.vertices, folded);
+      return fold_failures(*body.conjoint, folded);
 
     clock_.start("classification", 0.5, 0.55);
     body.classified = classify(*body.conjoint);
@@ -158,7 +187,9 @@ class BodyMesher {
     for (const Offence& offence : find_offences(model_, body.boundary)) {
       if (!told.insert(std::minmax(offence.a, offence.b)).second) continue;
       const Vec3 a = body.vertices.position(offence.a), b = body.vertices.position(offence.b);
-      failures.push_back({{offence.face}, 0.5 * (a + b), 0.5 * distance(a, b), describe(offence, model_)});
+      // An edge from a vertex around the face to itself has no length to go by.
+      const double size = offence.a == offence.b ? 0.5 * sizes_.at(a) : 0.5 * distance(a, b);
+      failures.push_back({{offence.face}, 0.5 * (a + b), size, describe(offence, model_)});
     }
     return failures;
   }

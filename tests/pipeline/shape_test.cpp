@@ -10,6 +10,8 @@
 #include <BRepBuilderAPI_MakeWire.hxx>
 #include <BRepBuilderAPI_NurbsConvert.hxx>
 #include <BRepBuilderAPI_Sewing.hxx>
+#include <BRepLib.hxx>
+#include <BRepOffsetAPI_MakePipe.hxx>
 #include <BRepPrimAPI_MakeBox.hxx>
 #include <BRepPrimAPI_MakeCone.hxx>
 #include <BRepPrimAPI_MakeCylinder.hxx>
@@ -19,8 +21,10 @@
 #include <BRep_Builder.hxx>
 #include <BinTools.hxx>
 #include <GC_MakeArcOfCircle.hxx>
+#include <Geom2d_Line.hxx>
 #include <GeomAPI_Interpolate.hxx>
 #include <Geom_BSplineCurve.hxx>
+#include <Geom_CylindricalSurface.hxx>
 #include <Geom_TrimmedCurve.hxx>
 #include <TColgp_HArray1OfPnt.hxx>
 #include <TopExp.hxx>
@@ -40,6 +44,7 @@
 #include <numbers>
 #include <set>
 #include <sstream>
+#include <tuple>
 
 #include "curvetet/occt.h"
 
@@ -338,6 +343,34 @@ TopoDS_Shape hourglass() {
   }
   sewing.Perform();
   return BRepBuilderAPI_MakeSolid(TopoDS::Shell(sewing.SewedShape())).Shape();
+}
+
+/// Along a helix of radius 0.7 and pitch 0.3.
+TopoDS_Shape wire_coil(double turns, double radius) {
+  constexpr double kTurn = 2 * std::numbers::pi;
+  const Handle(Geom_CylindricalSurface) around = new Geom_CylindricalSurface(gp_Ax3(), 0.7);
+  const Handle(Geom2d_Line) line = new Geom2d_Line(gp_Pnt2d(0, 0), gp_Dir2d(kTurn, 0.3));
+  const TopoDS_Edge helix = BRepBuilderAPI_MakeEdge(line, around, 0, turns * std::hypot(kTurn, 0.3)).Edge();
+  BRepLib::BuildCurves3d(helix);
+  const gp_Circ circle(gp_Ax2(gp_Pnt(0.7, 0, 0), gp_Dir(0, 0.7 * kTurn, 0.3)), radius);
+  const TopoDS_Wire outline = BRepBuilderAPI_MakeWire(BRepBuilderAPI_MakeEdge(circle)).Wire();
+  const TopoDS_Wire spine = BRepBuilderAPI_MakeWire(helix).Wire();
+  return BRepOffsetAPI_MakePipe(spine, BRepBuilderAPI_MakeFace(outline).Face()).Shape();
+}
+
+// Chords as long as the coil is wide: each round of the outer loop told of folds in other places of the one face, or
+// found an edge around the wire from a vertex to itself and gave up.
+TEST(MeshOfAShape, AThinWireMayBeMeshedWithChordsAsLongAsItsCoilIsWide) {
+  for (const auto& [turns, radius, size] :
+       {std::tuple(1.0, 0.03, 0.4), std::tuple(1.5, 0.015, 0.8), std::tuple(2.5, 0.03, 0.8)}) {
+    Options options;
+    options.size = size;
+    options.curvature = 0;
+    Context context;
+    const Result<MeshOutput> made = mesh(wire_coil(turns, radius), options, context);
+    ASSERT_TRUE(made) << turns << " " << made.error().message;
+    EXPECT_TRUE(made.value().report.valid) << turns;
+  }
 }
 
 // A cone of 0.6 degrees with a slot to its axis. Where it is thinner than the least size, triangles spanned half a turn
