@@ -96,7 +96,7 @@ class Checker {
     if (!open && !(area > 0)) {
       add(ModelFault::Kind::inside_out, face_entity(f), "its loops bound no positive area", area);
     }
-    check_apex(f);
+    check_axis(f);
     check_turns(f);
   }
 
@@ -141,16 +141,36 @@ class Checker {
     }
   }
 
-  /// Beyond the apex a cone goes on as its mirror image, with the side of the material changed.
-  void check_apex(FaceId f) {
+  /// Beyond the apex a cone goes on as its mirror image, with the side of the material changed, and so does any surface
+  /// of revolution whose profile crosses its axis. The derivative around the axis changes its direction there.
+  void check_axis(FaceId f) {
     const ModelFace& face = model_.faces[f];
-    if (face.surface->kind() != SurfaceKind::cone) return;
-    const SurfaceFirst below = face.surface->first(face.low), above = face.surface->first({face.low.x, face.high.y});
-    const double r = norm(below.du), s = norm(above.du);  // the radii there
-    if (dot(below.du, above.du) >= 0 || std::min(r, s) <= allowed(face.tolerance)) return;
-    faults_.push_back({ModelFault::Kind::crosses_itself, face_entity(f),
-                       "is on both sides of its cone's apex and crosses itself there", std::min(r, s),
-                       below.value + (r / (r + s)) * (above.value - below.value)});
+    const bool cone = face.surface->kind() == SurfaceKind::cone;
+    if (!cone && face.surface->kind() != SurfaceKind::revolution) return;
+    constexpr int kSteps = 400;
+    const auto ring = [&](int i) {
+      return face.surface->first({face.low.x, face.low.y + (face.high.y - face.low.y) * i / kSteps});
+    };
+    SurfaceFirst last = ring(0);
+    double before = 0, radius = norm(last.du);  // the largest radii on this side of the axis and on the one before
+    Vec3 crossing{};
+    for (int i = 1; i <= kSteps; ++i) {
+      const SurfaceFirst here = ring(i);
+      if (dot(here.du, last.du) < 0) {
+        before = radius;
+        radius = 0;
+        const double r = norm(last.du), s = norm(here.du);
+        crossing = last.value + (r / (r + s)) * (here.value - last.value);
+      }
+      radius = std::max(radius, norm(here.du));
+      if (norm2(here.du) > 0) last = here;
+      if (std::min(before, radius) <= allowed(face.tolerance)) continue;
+      faults_.push_back(
+          {ModelFault::Kind::crosses_itself, face_entity(f),
+           cone ? "is on both sides of its cone's apex and crosses itself there" : "crosses its axis, and itself there",
+           std::min(before, radius), crossing});
+      return;
+    }
   }
 
   double loop_area(const Loop& loop) const {

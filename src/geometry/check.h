@@ -18,7 +18,7 @@ struct ModelFault {
     inside_out,      ///< the loops of a face bound a negative or zero area in (u,v)
     solid_open,      ///< an edge of a solid's boundary is not used evenly by its faces
     not_finite,      ///< a coordinate that is not a finite number
-    crosses_itself,  ///< a face on both sides of its cone's apex, or twice at one place of its surface
+    crosses_itself,  ///< a face on both sides of its axis, or twice at one place of its surface
   };
   Kind kind = Kind::reference;
   std::string entity;         ///< "face 12"

@@ -386,6 +386,31 @@ TEST(MeshOfAShape, ANeedleKeepsItsSlotUpToTheTip) {
   }
 }
 
+/// A spline profile from axis to axis, turned, that overshoots the axis before its upper end.
+TopoDS_Shape overshot_revolution() {
+  const Handle(TColgp_HArray1OfPnt) points = new TColgp_HArray1OfPnt(1, 4);
+  points->SetValue(1, gp_Pnt(0, 0, -1));
+  points->SetValue(2, gp_Pnt(1, 0, -0.5));
+  points->SetValue(3, gp_Pnt(0.05, 0, 0.5));
+  points->SetValue(4, gp_Pnt(0, 0, 1));
+  GeomAPI_Interpolate profile(points, false, 1e-9);
+  profile.Perform();
+  BRepBuilderAPI_MakeWire outline(BRepBuilderAPI_MakeEdge(profile.Curve()));
+  outline.Add(BRepBuilderAPI_MakeEdge(points->Value(4), points->Value(1)));
+  const TopoDS_Face section = BRepBuilderAPI_MakeFace(outline.Wire()).Face();
+  return BRepPrimAPI_MakeRevol(section, gp_Ax1(gp_Pnt(0, 0, 0), gp_Dir(0, 0, 1))).Shape();
+}
+
+TEST(MeshOfAShape, ARevolutionWhoseProfileCrossesItsAxisCrossesItself) {
+  Context context;
+  const Result<MeshOutput> made = mesh(overshot_revolution(), {}, context);
+  ASSERT_FALSE(made);
+  EXPECT_EQ(made.error().code, ErrorCode::self_intersection);
+  EXPECT_NE(made.error().message.find("axis"), std::string::npos) << made.error().message;
+  ASSERT_TRUE(made.error().where);
+  EXPECT_NEAR(std::hypot(made.error().where->x, made.error().where->y), 0, 1e-3);
+}
+
 TEST(MeshOfAShape, AConeThroughItsApexCrossesItself) {
   Context context;
   const Result<MeshOutput> made = mesh(hourglass(), {}, context);
