@@ -211,7 +211,7 @@ double arc_estimate(const Corner& a, const Corner& b) {
 bool at_pole(const Corner& a) { return norm2(a.normal) == 0; }
 
 bool turns_about(const Corner& a, const Corner& b, const ChartSurface& on) {
-  return on.has_pole && dot(a.normal, b.normal) < kTurnsAbout;
+  return on.has_tip && dot(a.normal, b.normal) < kTurnsAbout;
 }
 
 bool bent(const Corner& a, const Corner& b) {
@@ -423,7 +423,7 @@ FaceMesh::FlipWanted spatial_criterion(const FaceMesh& mesh, const VertexStore& 
   return [corner, &mesh, &face](NodeId a, NodeId b, NodeId c, NodeId d) {
     corner(NodeId(std::max({a.value(), b.value(), c.value(), d.value()})));  // no resizing below: references stay good
     return flip_improves(corner(a), corner(b), corner(c), corner(d), FlipOrder::upright_first,
-                         {*face.surface, mesh.chart, mesh.has_pole()});
+                         {*face.surface, mesh.chart, mesh.has_tip()});
   };
 }
 

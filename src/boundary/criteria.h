@@ -27,7 +27,7 @@ Corner make_corner(const FaceNode& node, Vec3 position, const SurfaceFirst& at, 
 struct ChartSurface {
   const Surface& surface;
   const Chart& chart;
-  bool has_pole = false;  ///< of the face mesh on it
+  bool has_tip = false;  ///< of the face mesh on it
 };
 
 /// Mean of du x dv over a chart triangle, not of unit length: each part of the surface counts by its area in space.

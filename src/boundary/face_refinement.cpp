@@ -153,7 +153,7 @@ class FaceRefiner {
   }
 
   const Corner& corner(NodeId n) const { return corners_[n.value()]; }
-  ChartSurface on() const { return {surface_, mesh_.chart, mesh_.has_pole()}; }
+  ChartSurface on() const { return {surface_, mesh_.chart, mesh_.has_tip()}; }
 
   std::vector<TriangleId> alive() const {
     std::vector<TriangleId> all;
@@ -276,7 +276,7 @@ class FaceRefiner {
   };
 
   std::optional<Fan> fan_of(const FaceTriangle& t) const {
-    std::size_t at = 0;
+    std::size_t at = mesh_.has_tip() ? 0 : 3;
     while (at < 3 && !at_pole(corner(t.node[at]))) ++at;
     if (at == 3) return std::nullopt;
     const Vec3 pole = corner(t.node[at]).position;
@@ -311,7 +311,7 @@ class FaceRefiner {
     }
     if (verdict.need == Need::none) return false;
     if (verdict.need != Need::fan && place_point(id, verdict.need)) return true;
-    if (verdict.need == Need::size && mesh_.has_pole() && is_folded(id) && place_point(id, Need::fold)) return true;
+    if (verdict.need == Need::size && mesh_.has_tip() && is_folded(id) && place_point(id, Need::fold)) return true;
     return split_fan(id);
   }
 
@@ -406,7 +406,7 @@ class FaceRefiner {
     for (const std::size_t i : order) {
       if (t.use[i] != -1) continue;
       if (insert(evaluate(middle_of(corner(t.node[(i + 1) % 3]), corner(t.node[(i + 2) % 3]))), id, need)) return true;
-      if (need != Need::fold || !mesh_.has_pole()) return false;
+      if (need != Need::fold || !mesh_.has_tip()) return false;
     }
     return false;
   }
@@ -419,7 +419,7 @@ class FaceRefiner {
       return std::min({distance(point.at.value, a.position), distance(point.at.value, b.position),
                        distance(point.at.value, c.position)});
     const bool turns = turns_about(a, b, on()) || turns_about(b, c, on()) || turns_about(c, a, on());
-    if (!(need == Need::bend && turns) && !(need == Need::fold && mesh_.has_pole())) return size;
+    if (!(need == Need::bend && turns) && !(need == Need::fold && mesh_.has_tip())) return size;
     const double curvature = surface_.curvatures(mesh_.chart.to_uv(point.q)).x;
     return std::clamp(1 / curvature, kReachFloor * size, size);
   }

@@ -92,6 +92,8 @@ class FaceMesh {
   std::array<VertexId, 3> vertices(TriangleId t) const;
   /// Whether an edge of the boundary goes along a pole.
   bool has_pole() const { return !poles_.empty(); }
+  /// Whether it goes around one by more than half a turn, in steps of at most 30 degrees: not at the corner of a patch.
+  bool has_tip() const { return has_tip_; }
   /// The nodes that carry a vertex (one, or several for seams and poles).
   std::vector<NodeId> nodes_of(VertexId v) const;
   /// A triangle at a node; empty if the node is in none.
@@ -260,6 +262,7 @@ class FaceMesh {
   SegmentGrid boundary_;         // the edges of one triangle, by their nodes as that triangle sees them
   std::vector<NodeId> pinched_;  // nodes where the domain touches itself: more than one fan; sorted
   std::vector<VertexId> poles_;  // at both ends of a boundary edge; few
+  bool has_tip_ = false;
   std::size_t constrained_ = 0;  // sides of triangles on constrained edges
   std::vector<TriangleId> scratch_;
   std::vector<AwaitingEdge> awaiting_;

@@ -110,5 +110,22 @@ TEST(FaceRefinement, GoesAroundTheTipOfANeedleInSteps) {
   }
 }
 
+bool any_tip(const Model& model) {
+  BoundaryRunOptions options{0.5, 12};
+  options.until = Until::faces;
+  const auto run = run_boundary(model, options);
+  return std::any_of(run->boundary.faces.begin(), run->boundary.faces.end(),
+                     [](const FaceMesh& mesh) { return mesh.has_tip(); });
+}
+
+// However sharp: the rays of a needle hardly turn, its normals do.
+TEST(FaceRefinement, ATipIsAPoleThatTheFaceGoesAround) {
+  EXPECT_TRUE(any_tip(make_cone(0.02, 0, 2)));
+  EXPECT_TRUE(any_tip(make_cone(20, 0, 2)));
+  EXPECT_TRUE(any_tip(make_ball(2)));
+  EXPECT_FALSE(any_tip(make_half_ellipsoid(3, 1))) << "its poles are on the rim";
+  EXPECT_FALSE(any_tip(make_cylinder(1, 2)));
+}
+
 }  // namespace
 }  // namespace curvetet::test
