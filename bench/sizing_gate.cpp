@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "cad/load.h"
-#include "sizing/domain.h"
+#include "geometry/trimmed_domain.h"
 #include "sizing/size_field.h"
 
 namespace {
@@ -30,7 +30,7 @@ const char* name_of(SizeReason reason) {
 /// Triangles implied on one face, by the middle rule on a grid of its box.
 double implied_triangles(const Model& model, FaceId id, const SizeField& field, double& area) {
   const ModelFace& face = model.faces[id];
-  const sizing::TrimmedDomain domain(model, id);
+  const TrimmedDomain domain(model, id);
   const auto surface = face.surface->clone();
   constexpr int kCells = 60;
   const Vec2 step = (1.0 / kCells) * (face.high - face.low);

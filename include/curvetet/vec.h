@@ -40,6 +40,8 @@ inline Vec3 normalized(Vec3 a) {
   const double n = norm(a);
   return n > 0 ? (1 / n) * a : Vec3{};
 }
+/// Radians, 0 to pi; exact for small angles, too.
+inline double angle_between(Vec3 a, Vec3 b) { return std::atan2(norm(cross(a, b)), dot(a, b)); }
 inline bool finite(Vec3 a) { return std::isfinite(a.x) && std::isfinite(a.y) && std::isfinite(a.z); }
 
 /// Axis-aligned box; empty until extended.

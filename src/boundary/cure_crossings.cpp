@@ -378,12 +378,10 @@ class CrossingCure {
 
 std::vector<RecoveryFailure> fold_failures(const Conjoint& conjoint, const std::vector<SurfaceTriangle>& folded) {
   const auto size_of = [&](const SurfaceTriangle& t) {
-    const FaceMesh& mesh = conjoint.boundary().faces[t.face];
-    Vec2 middle{};
-    for (const NodeId n : mesh.triangle(t.triangle).node) middle = middle + (1.0 / 3) * mesh.node(n).q;
-    const double curvature = conjoint.model().faces[t.face].surface->curvatures(mesh.chart.to_uv(middle)).x;
+    const Bend bend =
+        bend_below(conjoint.boundary().faces[t.face], t.triangle, *conjoint.model().faces[t.face].surface);
     const double longest = longest_edge(conjoint.vertices(), t.vertices);
-    return std::clamp(1 / curvature, kLeastShare * longest, 0.5 * longest);
+    return std::clamp(bend.radius, kLeastShare * longest, 0.5 * longest);
   };
   std::vector<RecoveryFailure> failures;
   const std::size_t count = std::min(folded.size(), kMostFolds);

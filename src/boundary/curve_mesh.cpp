@@ -27,8 +27,6 @@ struct CurveSample {
   double size = 0;
 };
 
-double angle_between(Vec3 a, Vec3 b) { return std::atan2(norm(cross(a, b)), dot(a, b)); }
-
 class CurveSampler {
  public:
   CurveSampler(const ModelEdge& edge, EdgeId id, const SizeField& sizes) : edge_(edge), id_(id), sizes_(sizes) {}

@@ -101,10 +101,10 @@ Vec2 mean_speeds(const Surface& surface, const DomainSamples& domain) {
   return count > 0 ? (1.0 / count) * sum : Vec2{1, 1};
 }
 
-/// Parameters along a degenerate edge, such that the surface turns by at most 30 degrees around the pole from one to
-/// the next: on a sharp cone its normal does, on a flat one the direction away from the pole. With a node at each of
-/// its ends alone, no triangulation of the chart could show the triangles around the pole: their order around an end is
-/// not their order around the pole.
+/// Parameters along a degenerate edge, such that the surface turns by one of kPoleSteps of a turn around the pole from
+/// one to the next at most: on a sharp cone its normal does, on a flat one the direction away from the pole. With a
+/// node at each of its ends alone, no triangulation of the chart could show the triangles around the pole: their order
+/// around an end is not their order around the pole.
 std::vector<double> pole_parameters(const Surface& surface, const EdgeUse& use, const ModelEdge& edge) {
   const auto at = [&](int i, int n) { return i == n ? edge.high : edge.low + (edge.high - edge.low) * i / n; };
   double turn = 0;
@@ -114,11 +114,11 @@ std::vector<double> pole_parameters(const Surface& surface, const EdgeUse& use, 
     const SurfaceFirst first = surface.first(uv);
     const Vec3 inwards = normalized(norm2(first.du) > norm2(first.dv) ? first.du : first.dv);
     const Vec3 around = cross(surface.normal(uv), inwards);
-    if (i > 0) turn += std::atan2(norm(cross(previous, around)), dot(previous, around));
+    if (i > 0) turn += angle_between(previous, around);
     previous = around;
   }
-  const double wanted = std::ceil(turn / (std::numbers::pi / 6) - 1e-6);
-  const int segments = std::isfinite(wanted) ? static_cast<int>(std::clamp(wanted, 1.0, 24.0)) : 1;
+  const double wanted = std::ceil(turn / (2 * std::numbers::pi / kPoleSteps) - 1e-6);
+  const int segments = std::isfinite(wanted) ? static_cast<int>(std::clamp(wanted, 1.0, 2.0 * kPoleSteps)) : 1;
   std::vector<double> t;
   for (int i = 0; i <= segments; ++i) t.push_back(at(i, segments));
   return t;

@@ -285,9 +285,9 @@ class FaceRefiner {
     const FacePoint middle = evaluate(middle_of(a, b));
     // The direction around the pole: on a sharp cone the rays turn by little, on a flat one the normals.
     const auto around = [&](Vec3 normal, Vec3 position) { return cross(normal, position - pole); };
-    const auto angle = [](Vec3 u, Vec3 v) { return std::atan2(norm(cross(u, v)), dot(u, v)); };
     const Vec3 half_way = around(unit_normal(middle.at), middle.at.value);
-    return Fan{middle, angle(around(a.normal, a.position), half_way) + angle(half_way, around(b.normal, b.position))};
+    return Fan{middle, angle_between(around(a.normal, a.position), half_way) +
+                           angle_between(half_way, around(b.normal, b.position))};
   }
 
   /// Two triangles around a pole for one that spans too much of the turn. On a sharp cone they are thinner than the
@@ -424,15 +424,15 @@ class FaceRefiner {
     return std::clamp(1 / curvature, kReachFloor * size, size);
   }
 
-  /// Least distance to other nodes.
-  double spacing(const FaceTriangle& t, Need need, double reach, double size) const {
+  /// Least distance to other nodes; `near` is what `reach` says.
+  double spacing(const FaceTriangle& t, Need need, double near, double size) const {
     const Corner &a = corner(t.node[0]), &b = corner(t.node[1]), &c = corner(t.node[2]);
     if (need == Need::bend) {
       const double longest = std::max({arc_estimate(a, b), arc_estimate(b, c), arc_estimate(c, a)});
-      return std::min(kSpacing * reach, std::max(0.1 * longest, kBentFloor * std::min(size, usual_segment_)));
+      return std::min(kSpacing * near, std::max(0.1 * longest, kBentFloor * std::min(size, usual_segment_)));
     }
-    if (need == Need::fold) return kSpacing * std::min(reach, circumradius(a.position, b.position, c.position));
-    return kSpacing * reach;
+    if (need == Need::fold) return kSpacing * std::min(near, circumradius(a.position, b.position, c.position));
+    return kSpacing * near;
   }
 
   bool insert(const FacePoint& point, TriangleId from, Need need) {
@@ -523,7 +523,7 @@ class FaceRefiner {
 };
 
 /// Surfaces whose first fundamental form varies slowly, so that its mean over a large triangle means something. On the
-/// others, triangles judged on the surface are the second choice.
+/// others, and around poles, triangles judged on the surface are the second choice.
 bool has_even_form(SurfaceKind kind) {
   constexpr std::array kinds{SurfaceKind::cylinder, SurfaceKind::cone, SurfaceKind::torus, SurfaceKind::revolution,
                              SurfaceKind::extrusion};

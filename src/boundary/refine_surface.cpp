@@ -242,6 +242,11 @@ std::vector<SurfaceTriangle> facets_turned_away(const Conjoint& conjoint) {
   return found;
 }
 
+Bend bend_below(const FaceMesh& mesh, TriangleId triangle, const Surface& surface) {
+  const Vec2 uv = mesh.chart.to_uv(chart_centroid(mesh, triangle));
+  return {surface.value(uv), 1 / surface.curvatures(uv).x};
+}
+
 double segment_deviation(const Conjoint& conjoint, EdgeId edge, VertexId a, VertexId b) {
   const CurveMesh& curve = conjoint.boundary().curves[edge];
   for (std::size_t i = 0; i + 1 < curve.vertices.size(); ++i) {

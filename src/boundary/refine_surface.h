@@ -44,6 +44,13 @@ double facing_at_foot(const Conjoint& conjoint, FaceId face, const std::array<No
 /// The triangles of t_3d that look away from their face where it is closest to them, as the final check sees it. Time:
 /// three normals for each triangle, and feet for those that lean away from their face at a corner.
 std::vector<SurfaceTriangle> facets_turned_away(const Conjoint& conjoint);
+/// The surface below the middle of a triangle in the chart: its place, and the radius that it is bent by there,
+/// infinite where it is flat.
+struct Bend {
+  Vec3 where;
+  double radius = 0;
+};
+Bend bend_below(const FaceMesh& mesh, TriangleId triangle, const Surface& surface);
 /// Distance from the middle of a segment to the curve at the middle parameter.
 double segment_deviation(const Conjoint& conjoint, EdgeId edge, VertexId a, VertexId b);
 

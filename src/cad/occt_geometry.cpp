@@ -32,9 +32,11 @@ Vec3 vec(const gp_Vec& v) { return {v.X(), v.Y(), v.Z()}; }
 Vec3 vec(const gp_Dir& v) { return {v.X(), v.Y(), v.Z()}; }
 Vec2 vec(const gp_XY& v) { return {v.X(), v.Y()}; }
 
+Vec3 working(const Frame& frame, const gp_Pnt& p) { return frame.to_working(to_vec(p.XYZ())); }
+
 Placement placement(const gp_Ax3& axes, const Frame& frame) {
   Placement at;
-  at.origin = frame.to_working(to_vec(axes.Location().XYZ()));
+  at.origin = working(frame, axes.Location());
   at.x = vec(axes.XDirection());
   at.y = vec(axes.YDirection());
   at.z = vec(axes.Direction());
@@ -124,14 +126,15 @@ class OcctSurface final : public Surface {
 
   SurfaceKind kind() const override { return kind_; }
   Vec3 value(Vec2 uv) const override {
-    return where_defined([&] { return at(adaptor_.Value(u_.inside(uv.x), v_.inside(uv.y))); }, [] { return kNowhere; });
+    return where_defined([&] { return working(frame_, adaptor_.Value(u_.inside(uv.x), v_.inside(uv.y))); },
+                         [] { return kNowhere; });
   }
   SurfaceFirst first(Vec2 uv) const override {
     const auto evaluate = [&]() -> SurfaceFirst {
       gp_Pnt p;
       gp_Vec du, dv;
       adaptor_.D1(u_.inside(uv.x), v_.inside(uv.y), p, du, dv);
-      return {at(p), scaled(du), scaled(dv)};
+      return {working(frame_, p), scaled(du), scaled(dv)};
     };
     return where_defined(evaluate, [&] { return SurfaceFirst{value(uv), {}, {}}; });
   }
@@ -140,7 +143,7 @@ class OcctSurface final : public Surface {
       gp_Pnt p;
       gp_Vec du, dv, duu, dvv, duv;
       adaptor_.D2(u_.inside(uv.x), v_.inside(uv.y), p, du, dv, duu, dvv, duv);
-      return {at(p), scaled(du), scaled(dv), scaled(duu), scaled(duv), scaled(dvv)};
+      return {working(frame_, p), scaled(du), scaled(dv), scaled(duu), scaled(duv), scaled(dvv)};
     };
     return where_defined(evaluate, [&] {
       const SurfaceFirst lower = first(uv);
@@ -152,7 +155,6 @@ class OcctSurface final : public Surface {
   std::unique_ptr<Surface> clone() const override { return std::make_unique<OcctSurface>(*this); }
 
  private:
-  Vec3 at(const gp_Pnt& p) const { return frame_.to_working(to_vec(p.XYZ())); }
   Vec3 scaled(const gp_Vec& v) const { return frame_.scale * vec(v); }
   Handle(Geom_Surface) surface_;
   GeomAdaptor_Surface adaptor_;
@@ -172,21 +174,20 @@ class OcctCurve final : public Curve {
     return adaptor_.GetType() == GeomAbs_BSplineCurve ? CurveKind::bspline : CurveKind::other;
   }
   Vec3 value(double t) const override {
-    return where_defined([&] { return at(adaptor_.Value(t)); }, [] { return kNowhere; });
+    return where_defined([&] { return working(frame_, adaptor_.Value(t)); }, [] { return kNowhere; });
   }
   CurveSecond second(double t) const override {
     const auto evaluate = [&]() -> CurveSecond {
       gp_Pnt p;
       gp_Vec d, dd;
       adaptor_.D2(t, p, d, dd);
-      return {at(p), frame_.scale * vec(d), frame_.scale * vec(dd)};
+      return {working(frame_, p), frame_.scale * vec(d), frame_.scale * vec(dd)};
     };
     return where_defined(evaluate, [&] { return CurveSecond{value(t), {}, {}}; });
   }
   std::unique_ptr<Curve> clone() const override { return std::make_unique<OcctCurve>(*this); }
 
  private:
-  Vec3 at(const gp_Pnt& p) const { return frame_.to_working(to_vec(p.XYZ())); }
   Handle(Geom_Curve) curve_;
   GeomAdaptor_Curve adaptor_;
   Frame frame_;
@@ -200,7 +201,12 @@ class OcctParameterCurve final : public ParameterCurve {
       : ParameterCurve(other), curve_(other.curve_), adaptor_(other.curve_), map_(other.map_) {}
   OcctParameterCurve& operator=(const OcctParameterCurve&) = delete;
 
-  Vec2 value(double t) const override { return vec(adaptor_.Value(map_.scale * t + map_.offset).XY()) + map_.shift; }
+  Vec2 value(double t) const override {
+    return where_defined([&] { return vec(adaptor_.Value(map_.scale * t + map_.offset).XY()) + map_.shift; },
+                         [] {
+                           return Vec2{kNan, kNan};
+                         });
+  }
   std::unique_ptr<ParameterCurve> clone() const override { return std::make_unique<OcctParameterCurve>(*this); }
 
  private:
@@ -255,7 +261,7 @@ std::unique_ptr<Curve> make_curve(const Handle(Geom_Curve) & curve, const Frame&
   const Handle(Geom_Curve) basis = basis_of(curve);
   if (const auto line = Handle(Geom_Line)::DownCast(basis)) {
     const gp_Ax1& at = line->Position();
-    return make_line(frame.to_working(to_vec(at.Location().XYZ())), vec(at.Direction()), frame.scale);
+    return make_line(working(frame, at.Location()), vec(at.Direction()), frame.scale);
   }
   if (const auto circle = Handle(Geom_Circle)::DownCast(basis)) {
     const double radius = frame.length_to_working(circle->Radius());

@@ -7,28 +7,13 @@
 #include <array>
 #include <cmath>
 #include <map>
-#include <utility>
+
+#include "geometry/trimmed_domain.h"
 
 namespace curvetet {
 namespace {
 
 constexpr double kMoreThanATurn = 1e-3;  ///< of a period
-
-/// The loops of a face as polygons in (u,v).
-class Outline {
- public:
-  void add(Vec2 a, Vec2 b) { sides_.push_back({a, b}); }
-
-  bool contains(Vec2 q) const {
-    bool inside = false;
-    for (const auto& [a, b] : sides_)
-      if ((a.y > q.y) != (b.y > q.y) && (cross(b - a, q - a) > 0) == (b.y > a.y)) inside = !inside;
-    return inside;
-  }
-
- private:
-  std::vector<std::pair<Vec2, Vec2>> sides_;
-};
 
 class Checker {
  public:
@@ -108,34 +93,26 @@ class Checker {
     const bool around = turn_u > 0 && extent.x > (1 + kMoreThanATurn) * turn_u;
     const bool along = turn_v > 0 && extent.y > (1 + kMoreThanATurn) * turn_v;
     if (!around && !along) return;
-    const Outline outline = outline_of(face);
-    if (around) find_twice(f, outline, {turn_u, 0});
-    if (along) find_twice(f, outline, {0, turn_v});
+    const TrimmedDomain domain(model_, f);
+    if (around) find_twice(f, domain, {turn_u, 0});
+    if (along) find_twice(f, domain, {0, turn_v});
   }
 
-  Outline outline_of(const ModelFace& face) const {
-    constexpr int kSteps = 256;
-    Outline outline;
-    for (const Loop& loop : face.loops)
-      for (const EdgeUse& use : loop.uses)
-        for (int i = 0; i < kSteps; ++i)
-          outline.add(at(use, static_cast<double>(i) / kSteps), at(use, static_cast<double>(i + 1) / kSteps));
-    return outline;
-  }
-
-  /// A cell of a raster that lies in the domain, as well as a turn later. All of its corners, for the outline's chords
-  /// are not its curves.
-  void find_twice(FaceId f, const Outline& outline, Vec2 turn) {
+  /// A cell of a raster that lies in the domain, as well as a turn later: all of its corners, for the chords that the
+  /// domain is told by are not its curves.
+  void find_twice(FaceId f, const TrimmedDomain& domain, Vec2 turn) {
     constexpr int kCells = 48;
-    const ModelFace& face = model_.faces[f];
-    const Vec2 cell = (1.0 / kCells) * (face.high - face.low);
-    const auto twice = [&](Vec2 q) { return outline.contains(q) && outline.contains(q + turn); };
-    for (int i = 0; i < kCells; ++i) {
-      for (int j = 0; j < kCells; ++j) {
-        const Vec2 q = face.low + Vec2{i * cell.x, j * cell.y};
-        if (!twice(q) || !twice(q + Vec2{cell.x, 0}) || !twice(q + Vec2{0, cell.y}) || !twice(q + cell)) continue;
+    const Vec2 cell = (1.0 / kCells) * (domain.high() - domain.low());
+    const auto node = [&](int i, int j) { return domain.low() + Vec2{i * cell.x, j * cell.y}; };
+    std::vector<char> column(kCells + 1, 0), before;
+    for (int i = 0; i <= kCells; ++i) {
+      before = column;
+      for (int j = 0; j <= kCells; ++j)
+        column[j] = domain.inside(node(i, j)) && domain.inside(node(i, j) + turn) ? 1 : 0;
+      for (int j = 1; j <= kCells; ++j) {
+        if (!column[j] || !column[j - 1] || !before[j] || !before[j - 1]) continue;
         faults_.push_back({ModelFault::Kind::crosses_itself, face_entity(f), "covers a part of its surface twice", 0,
-                           face.surface->value(q + 0.5 * cell)});
+                           model_.faces[f].surface->value(node(i, j) - 0.5 * cell)});
         return;
       }
     }

@@ -41,9 +41,10 @@ class BodyMesher {
       result.failures = std::move(failures.value());
       if (result.failures.empty() || is_last_round() || hopeless(result.failures)) return result;
       for (const RecoveryFailure& f : result.failures) log(f);
-      for (FaceId f : named(result.failures)) ++result.restarts[f].tried;
+      const std::set<FaceId> faces = named(result.failures);
+      for (FaceId f : faces) ++result.restarts[f].tried;
       std::vector<SizeSource> more = sources(result.failures);
-      if (loop_.round() >= kPatience) add_bends(*result.mesh, named(result.failures), more);
+      if (loop_.round() >= kPatience) add_bends(*result.mesh, faces, more);
       loop_.asked.push_back(std::move(more));
       sizes_.add(loop_.asked.back());
     }
@@ -82,11 +83,8 @@ class BodyMesher {
     std::vector<SizeSource> more;
     for (const RecoveryFailure& f : failures) {
       if (f.size <= 0) continue;
-      SizeSource s;
-      s.where = f.where;
-      s.size = std::max(std::min(f.size, 0.5 * sizes_.at(f.where)), settings_.floor);
-      s.reason = SizeReason::outer_loop;
-      if (!f.faces.empty()) s.face = f.faces.front();
+      SizeSource s =
+          source(f.where, std::min(f.size, 0.5 * sizes_.at(f.where)), f.faces.empty() ? FaceId() : f.faces.front());
       if (f.faces.size() > 1) s.other = f.faces[1];
       more.push_back(s);
     }
@@ -98,22 +96,22 @@ class BodyMesher {
   void add_bends(const BodyMesh& body, const std::set<FaceId>& faces, std::vector<SizeSource>& more) const {
     for (const FaceId f : faces) {
       const FaceMesh& mesh = body.boundary.faces[f];
-      const Surface& surface = *model_.faces[f].surface;
-      for (std::size_t k = 0; k < mesh.triangle_slots(); ++k) {
-        const FaceTriangle& t = mesh.triangle(TriangleId(k));
-        if (!t.alive()) continue;
-        const Vec2 uv =
-            mesh.chart.to_uv((1.0 / 3) * (mesh.node(t.node[0]).q + mesh.node(t.node[1]).q + mesh.node(t.node[2]).q));
-        const double radius = 1 / surface.curvatures(uv).x;
-        SizeSource s;
-        s.where = surface.value(uv);
-        if (!finite(s.where) || longest_edge(body.vertices, mesh.vertices(TriangleId(k))) <= 2 * radius) continue;
-        s.size = std::max(kBendShare * radius, settings_.floor);
-        s.reason = SizeReason::outer_loop;
-        s.face = f;
-        more.push_back(s);
+      for (const SurfaceTriangle& t : surface_triangles(mesh, f)) {
+        const Bend bend = bend_below(mesh, t.triangle, *model_.faces[f].surface);
+        if (!finite(bend.where) || longest_edge(body.vertices, t.vertices) <= 2 * bend.radius) continue;
+        more.push_back(source(bend.where, kBendShare * bend.radius, f));
       }
     }
+  }
+
+  /// What is asked for, not below the floor.
+  SizeSource source(Vec3 where, double size, FaceId face) const {
+    SizeSource s;
+    s.where = where;
+    s.size = std::max(size, settings_.floor);
+    s.reason = SizeReason::outer_loop;
+    s.face = face;
+    return s;
   }
 
   Result<Failures> attempt(BodyMesh& body) {

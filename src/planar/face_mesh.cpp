@@ -15,8 +15,6 @@ namespace {
 
 // A hint farther away than this many triangles is worth less than a look at some triangles all over the mesh.
 constexpr std::size_t kHintedSteps = 64;
-// Steps of at most 30 degrees along a pole.
-constexpr std::size_t kHalfTurn = 6;
 
 int local_of(const FaceTriangle& t, NodeId n) {
   return t.node[0] == n ? 0 : t.node[1] == n ? 1 : t.node[2] == n ? 2 : -1;
@@ -288,6 +286,7 @@ void FaceMesh::index_boundary() {
   }
   std::sort(poles_.begin(), poles_.end());
   has_tip_ = false;
+  constexpr std::size_t kHalfTurn = kPoleSteps / 2;
   for (std::size_t i = kHalfTurn; i < poles_.size(); ++i) has_tip_ = has_tip_ || poles_[i] == poles_[i - kHalfTurn];
   poles_.erase(std::unique(poles_.begin(), poles_.end()), poles_.end());
 }

@@ -74,6 +74,10 @@ struct LoopFault {
   std::string what;
 };
 
+/// Of a full turn around a pole: an edge along one comes in chains without longer steps, or the triangles around it are
+/// not told apart.
+inline constexpr int kPoleSteps = 12;
+
 class FaceMesh {
  public:
   Chart chart;
@@ -92,7 +96,7 @@ class FaceMesh {
   std::array<VertexId, 3> vertices(TriangleId t) const;
   /// Whether an edge of the boundary goes along a pole.
   bool has_pole() const { return !poles_.empty(); }
-  /// Whether it goes around one by more than half a turn, in steps of at most 30 degrees: not at the corner of a patch.
+  /// Whether it goes around one by more than half a turn, by its edges along it: not at the corner of a patch.
   bool has_tip() const { return has_tip_; }
   /// The nodes that carry a vertex (one, or several for seams and poles).
   std::vector<NodeId> nodes_of(VertexId v) const;

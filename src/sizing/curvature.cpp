@@ -31,8 +31,6 @@ constexpr double kConfirmed = 0.5;          ///< part of the angle that must rea
 constexpr double kToleranceSizes = 8;       ///< sizes that bending demands are at least this many tolerances
 constexpr double kLeastFraction = 0.1;      ///< of a size over which a turning can be measured
 
-double angle_between(Vec3 a, Vec3 b) { return std::atan2(norm(cross(a, b)), dot(a, b)); }
-
 Vec2 clamped(Vec2 uv, Vec2 low, Vec2 high) {
   return {std::clamp(uv.x, low.x, high.x), std::clamp(uv.y, low.y, high.y)};
 }

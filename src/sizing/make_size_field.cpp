@@ -15,7 +15,6 @@ namespace {
 
 using sizing::EdgeSamples;
 using sizing::FaceSamples;
-using sizing::TrimmedDomain;
 
 constexpr double kShortestEdgeSize = 0.3;  ///< sizes from short edges, as a part of the size around them
 

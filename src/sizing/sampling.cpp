@@ -39,8 +39,6 @@ int first_cells(SurfaceKind kind) {
   }
 }
 
-double angle_between(Vec3 a, Vec3 b) { return std::atan2(norm(cross(a, b)), dot(a, b)); }
-
 double distance_to_segment(Vec3 p, Vec3 a, Vec3 b) {
   const Vec3 d = b - a;
   const double length2 = norm2(d);

@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "geometry/model.h"
+#include "geometry/trimmed_domain.h"
 #include "sizing/curvature.h"
-#include "sizing/domain.h"
 
 namespace curvetet::sizing {
 

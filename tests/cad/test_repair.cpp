@@ -41,23 +41,18 @@
 
 #include "cad/shape.h"
 #include "shapes.h"
+#include "support/occt_shapes.h"
 
 namespace curvetet {
 namespace {
+
+using test::compound_of;
 
 Result<Model> convert(const TopoDS_Shape& shape, Overlaps overlaps = Overlaps::refuse) {
   Context context;
   ShapeOptions options;
   options.joining.overlaps = overlaps;
   return model_from_shape(shape, options, context);
-}
-
-TopoDS_Compound compound_of(const std::vector<TopoDS_Shape>& shapes) {
-  TopoDS_Compound compound;
-  BRep_Builder builder;
-  builder.MakeCompound(compound);
-  for (const TopoDS_Shape& shape : shapes) builder.Add(compound, shape);
-  return compound;
 }
 
 /// Flat faces over shared vertices and edges, each listed counterclockwise as seen from outside.

@@ -20,7 +20,6 @@
 #include <BRep_Builder.hxx>
 #include <BRep_Tool.hxx>
 #include <GProp_GProps.hxx>
-#include <GeomAPI_Interpolate.hxx>
 #include <GeomConvert.hxx>
 #include <Geom_BSplineCurve.hxx>
 #include <Geom_ConicalSurface.hxx>
@@ -31,7 +30,6 @@
 #include <ShapeBuild_ReShape.hxx>
 #include <ShapeCustom.hxx>
 #include <Standard_Failure.hxx>
-#include <TColgp_HArray1OfPnt.hxx>
 #include <TopExp.hxx>
 #include <TopExp_Explorer.hxx>
 #include <TopTools_IndexedMapOfShape.hxx>
@@ -39,7 +37,6 @@
 #include <TopoDS_Compound.hxx>
 #include <TopoDS_Face.hxx>
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <numbers>
 #include <random>
@@ -49,6 +46,7 @@
 #include "cad/occt_geometry.h"
 #include "cad/shape.h"
 #include "shapes.h"
+#include "support/occt_shapes.h"
 
 namespace curvetet {
 namespace {
@@ -156,15 +154,12 @@ TEST(ModelFromShape, VolumesAreExactWhateverTheSurfaces) {
 
 /// Closed, around the origin, through five points.
 Handle(Geom_BSplineCurve) make_star() {
-  const Handle(TColgp_HArray1OfPnt) points = new TColgp_HArray1OfPnt(1, 5);
-  const std::array radii{0.4, 0.9, 0.5, 1.0, 0.6};
-  for (int i = 0; i < 5; ++i) {
-    const double angle = 2 * kPi * i / 5, radius = radii[static_cast<std::size_t>(i)];
-    points->SetValue(i + 1, gp_Pnt(radius * std::cos(angle), radius * std::sin(angle), 0));
+  std::vector<gp_Pnt> points;
+  for (const double radius : {0.4, 0.9, 0.5, 1.0, 0.6}) {
+    const double angle = 2 * kPi * static_cast<double>(points.size()) / 5;
+    points.emplace_back(radius * std::cos(angle), radius * std::sin(angle), 0);
   }
-  GeomAPI_Interpolate spline(points, true, 1e-6);
-  spline.Perform();
-  return spline.Curve();
+  return test::spline_through(points, true);
 }
 
 // The kernel's adaptive rule is off by a tenth.

@@ -3,13 +3,12 @@
 #include <BRepPrimAPI_MakeBox.hxx>
 #include <BRepPrimAPI_MakeCone.hxx>
 #include <BRepPrimAPI_MakeCylinder.hxx>
-#include <BRep_Builder.hxx>
 #include <TopExp_Explorer.hxx>
-#include <TopoDS_Compound.hxx>
 #include <numbers>
 
 #include "random/changes.h"
 #include "random/hard_bodies.h"
+#include "support/occt_shapes.h"
 
 namespace curvetet::test {
 
@@ -57,14 +56,6 @@ TopoDS_Shape tip(Draw& draw) {
   return draw.coin() ? dress(draw, shape) : shape;
 }
 
-TopoDS_Compound together(const std::vector<TopoDS_Shape>& shapes) {
-  TopoDS_Compound compound;
-  BRep_Builder builder;
-  builder.MakeCompound(compound);
-  for (const TopoDS_Shape& shape : shapes) builder.Add(compound, shape);
-  return compound;
-}
-
 /// Blocks and cylinders on one another.
 TopoDS_Shape stack(Draw& draw) {
   std::vector<TopoDS_Shape> shapes;
@@ -80,14 +71,14 @@ TopoDS_Shape stack(Draw& draw) {
     }
     z += height;
   }
-  return together(shapes);
+  return compound_of(shapes);
 }
 
 /// A primitive in the place that it has taken from another.
 TopoDS_Shape inlay(Draw& draw) {
   const TopoDS_Shape around = primitive(draw), core = primitive(draw);
   const TopoDS_Shape rest = BRepAlgoAPI_Cut(around, core).Shape();
-  return has_volume(rest) ? TopoDS_Shape(together({rest, core})) : core;
+  return has_volume(rest) ? TopoDS_Shape(compound_of({rest, core})) : core;
 }
 
 bool crosses_itself(const TopoDS_Shape& shape) {
@@ -103,10 +94,11 @@ bool crosses_itself(const TopoDS_Shape& shape) {
 
 }  // namespace
 
+// One that is listed more than once is drawn more often.
 const std::vector<ShapeKind>& body_kinds() {
   static const std::vector<ShapeKind> kinds{{"combination", combination},
-                                            {"combined", combination},
-                                            {"joined", combination},
+                                            {"combination", combination},
+                                            {"combination", combination},
                                             {"dressed", dressed},
                                             {"plate", plate},
                                             {"tip", tip},

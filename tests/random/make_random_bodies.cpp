@@ -15,10 +15,12 @@
 #include <Standard_Failure.hxx>
 #include <algorithm>
 #include <array>
+#include <cerrno>
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
 #include <optional>
+#include <system_error>
 
 #include "random/shapes.h"
 
@@ -67,12 +69,17 @@ double diagonal_of(const TopoDS_Shape& shape) {
 /// In a process of its own, for OpenCASCADE crashes or hangs over some of them. Empty: this seed gives no sound body.
 std::string make_body(std::uint32_t seed, const std::string& kind, const std::filesystem::path& folder) {
   std::array<int, 2> ends{};
-  if (pipe(ends.data()) != 0) return {};
+  if (pipe(ends.data()) != 0) throw std::system_error(errno, std::generic_category(), "pipe");
   const pid_t child = fork();
+  if (child < 0) throw std::system_error(errno, std::generic_category(), "fork");
   if (child == 0) {
     alarm(kSecondsForABody);
     const std::optional<Body> body = draw_body(seed, kind);
-    if (!body || !write(*body, folder)) _exit(1);
+    if (!body) _exit(1);
+    if (!write(*body, folder)) {
+      std::filesystem::remove(folder / body->name);
+      _exit(1);
+    }
     dprintf(ends[1], "{\"path\": \"%s\", \"diag\": %.9g}", body->name.c_str(), diagonal_of(body->shape));
     _exit(0);
   }
@@ -93,13 +100,19 @@ int main(int count, char** arguments) {
     std::fprintf(stderr, "usage: %s FOLDER COUNT [SEED [KIND]]\n", arguments[0]);
     return 2;
   }
+  const std::string kind = count > 4 ? arguments[4] : "";
+  const auto is_kind = [&](const ShapeKind& k) { return kind.empty() || k.name == kind; };
+  if (std::none_of(body_kinds().begin(), body_kinds().end(), is_kind)) {
+    std::fprintf(stderr, "no kind of body: %s\n", kind.c_str());
+    return 2;
+  }
   const std::filesystem::path folder(arguments[1]);
   std::filesystem::create_directories(folder);
   Message::DefaultMessenger()->ChangePrinters().Clear();
   std::ofstream list(folder / "bodies.txt"), manifest(folder / "manifest.jsonl");
   auto seed = static_cast<std::uint32_t>(count > 3 ? std::atoi(arguments[3]) : 1);
   for (int left = std::atoi(arguments[2]); left > 0; ++seed) {
-    const std::string line = make_body(seed, count > 4 ? arguments[4] : "", folder);
+    const std::string line = make_body(seed, kind, folder);
     if (line.empty()) continue;
     const std::size_t name = line.find(": \"") + 3;
     list << line.substr(name, line.find('"', name) - name) << std::endl;

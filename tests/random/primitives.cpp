@@ -12,8 +12,6 @@
 #include <BRepPrimAPI_MakeSphere.hxx>
 #include <BRepPrimAPI_MakeTorus.hxx>
 #include <BRepPrimAPI_MakeWedge.hxx>
-#include <GeomAPI_Interpolate.hxx>
-#include <TColgp_HArray1OfPnt.hxx>
 #include <TopoDS_Vertex.hxx>
 #include <gp_Circ.hxx>
 #include <gp_Elips.hxx>
@@ -21,6 +19,7 @@
 #include <numbers>
 
 #include "random/shapes.h"
+#include "support/occt_shapes.h"
 
 namespace curvetet::test {
 
@@ -28,14 +27,6 @@ namespace {
 
 using Points = std::vector<gp_Pnt>;
 constexpr double kTurn = 2 * std::numbers::pi;
-
-Handle(Geom_BSplineCurve) spline(const Points& points, bool closed) {
-  const Handle(TColgp_HArray1OfPnt) array = new TColgp_HArray1OfPnt(1, static_cast<int>(points.size()));
-  for (std::size_t i = 0; i < points.size(); ++i) array->SetValue(static_cast<int>(i) + 1, points[i]);
-  GeomAPI_Interpolate interpolate(array, closed, 1e-6);
-  interpolate.Perform();
-  return interpolate.Curve();
-}
 
 gp_Pnt at(const gp_Ax2& axes, double x, double y, double z) {
   return axes.Location().XYZ() + x * axes.XDirection().XYZ() + y * axes.YDirection().XYZ() + z * axes.Direction().XYZ();
@@ -54,7 +45,7 @@ TopoDS_Wire closed_spline(Draw& draw, const gp_Ax2& axes, std::size_t count) {
                  angle = first + kTurn * static_cast<double>(i) / static_cast<double>(count);
     points.push_back(at(axes, radius * std::cos(angle), radius * std::sin(angle), 0));
   }
-  return BRepBuilderAPI_MakeWire(BRepBuilderAPI_MakeEdge(spline(points, true))).Wire();
+  return BRepBuilderAPI_MakeWire(BRepBuilderAPI_MakeEdge(spline_through(points, true))).Wire();
 }
 
 TopoDS_Shape box(Draw& draw) {
@@ -127,7 +118,7 @@ TopoDS_Shape pipe(Draw& draw) {
     const double y = draw.between(-0.6, 0.6);
     points.emplace_back(-1.5 + i, y, draw.between(-0.6, 0.6));
   }
-  const Handle(Geom_BSplineCurve) path = spline(points, false);
+  const Handle(Geom_BSplineCurve) path = spline_through(points, false);
   gp_Pnt start;
   gp_Vec along;
   path->D1(path->FirstParameter(), start, along);
@@ -148,7 +139,7 @@ TopoDS_Shape revolution(Draw& draw) {
     points.push_back(
         at(axes, to_axis && end ? 0 : radius, 0, -1 + 2.0 * static_cast<double>(i) / static_cast<double>(count - 1)));
   }
-  BRepBuilderAPI_MakeWire outline(BRepBuilderAPI_MakeEdge(spline(points, false)));
+  BRepBuilderAPI_MakeWire outline(BRepBuilderAPI_MakeEdge(spline_through(points, false)));
   const gp_Pnt low = at(axes, 0, 0, -1), high = at(axes, 0, 0, 1);
   if (!to_axis) outline.Add(BRepBuilderAPI_MakeEdge(points.back(), high));
   outline.Add(BRepBuilderAPI_MakeEdge(high, low));
@@ -163,7 +154,7 @@ TopoDS_Shape revolution(Draw& draw) {
 
 const std::vector<ShapeKind>& primitive_kinds() {
   static const std::vector<ShapeKind> kinds{
-      {"box", box},   {"cylinder", cylinder}, {"bore", cylinder},        {"ball", ball},
+      {"box", box},   {"cylinder", cylinder}, {"cylinder", cylinder},    {"ball", ball},
       {"cone", cone}, {"torus", torus},       {"wedge", wedge},          {"prism", spline_prism},
       {"loft", loft}, {"pipe", pipe},         {"revolution", revolution}};
   return kinds;

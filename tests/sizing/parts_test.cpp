@@ -6,9 +6,9 @@
 #include <numbers>
 #include <random>
 
+#include "geometry/trimmed_domain.h"
 #include "sizing/closest_pair.h"
 #include "sizing/curvature.h"
-#include "sizing/domain.h"
 #include "sizing/patch_model.h"
 #include "support/bodies.h"
 #include "support/lip.h"
@@ -30,7 +30,7 @@ TEST(TrimmedDomain, RingHasAHole) {
   const Model model = test::make_tube(10, 4, 5);
   const FaceId ring = plane_face(model);
   ASSERT_TRUE(ring.valid());
-  const sizing::TrimmedDomain domain(model, ring);
+  const TrimmedDomain domain(model, ring);
   const auto& surface = *model.faces[ring].surface;
   std::mt19937 random(1);
   std::uniform_real_distribution<double> part(0, 1);
@@ -60,7 +60,7 @@ TEST(TrimmedDomain, RingHasAHole) {
 TEST(TrimmedDomain, CellsInTheHoleAreOutside) {
   const Model model = test::make_tube(10, 4, 5);
   const FaceId ring = plane_face(model);
-  const sizing::TrimmedDomain domain(model, ring);
+  const TrimmedDomain domain(model, ring);
   const Vec2 middle = 0.5 * (domain.low() + domain.high());
   const Vec2 step = 0.02 * (domain.high() - domain.low());
   EXPECT_FALSE(domain.meets(middle - step, middle + step));
@@ -71,7 +71,7 @@ TEST(TrimmedDomain, LiftsByWholePeriods) {
   const Model model = test::make_cylinder(1, 3);
   for (std::size_t i = 0; i < model.faces.size(); ++i) {
     if (model.faces[FaceId(i)].surface->kind() != SurfaceKind::cylinder) continue;
-    const sizing::TrimmedDomain domain(model, FaceId(i));
+    const TrimmedDomain domain(model, FaceId(i));
     const double v = 0.5 * (domain.low().y + domain.high().y);
     for (const int turns : {-2, -1, 1, 2}) {
       const Vec2 lifted = domain.lifted({domain.low().x + 1 + turns * kTurn, v});

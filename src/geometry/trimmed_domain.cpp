@@ -4,12 +4,12 @@
 // domain. That is coarser than the curve meshes of the mesher and need not agree with them: here a point close to the
 // boundary may be told either way.
 
-#include "sizing/domain.h"
+#include "geometry/trimmed_domain.h"
 
 #include <algorithm>
 #include <cmath>
 
-namespace curvetet::sizing {
+namespace curvetet {
 
 namespace {
 
@@ -140,4 +140,4 @@ bool TrimmedDomain::is_near_boundary(Vec2 uv, Vec2 scale, double reach) const {
   return false;
 }
 
-}  // namespace curvetet::sizing
+}  // namespace curvetet

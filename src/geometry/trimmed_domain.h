@@ -7,7 +7,7 @@
 
 #include "geometry/model.h"
 
-namespace curvetet::sizing {
+namespace curvetet {
 
 /// Loops as polygons, close enough for sampling (chords within a fraction of a percent of the domain's box), not for
 /// topology. A face without loops is its whole box. Immutable once made, so that threads may share it.
@@ -39,4 +39,4 @@ class TrimmedDomain {
   std::vector<std::vector<std::uint32_t>> rows_;  ///< segments that meet each strip of v
 };
 
-}  // namespace curvetet::sizing
+}  // namespace curvetet
